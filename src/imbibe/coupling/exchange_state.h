@@ -1,0 +1,19 @@
+// What textile and free liquid owe each other between steps: mass that was moved in the books but not yet as whole
+// particles. A particle dies only when its whole mass was taken and is born only when a queue holds one.
+#pragma once
+
+#include <vector>
+
+#include "imbibe/core/types.h"
+
+namespace imbibe {
+
+struct ExchangeState {
+  std::vector<Real> owed_kg;     // per node: taken from the liquid above, particles not yet removed
+  std::vector<Real> waiting_kg;  // per node: released by the textile, not yet a particle
+  Vec3 impulse{};                // N s, momentum given to the (fixed) textile since the start
+  std::uint64_t contacts = 0;    // particle hits on yarns since the start
+  std::uint64_t absorbed_particles = 0, released_particles = 0, bounces = 0;
+};
+
+}  // namespace imbibe

@@ -1,0 +1,94 @@
+// The woven structure as a network: yarn segments and pores are nodes; ways for liquid between them are edges.
+// Pure geometry and dry materials: nothing here knows about liquid. Built by fabric/fabric.h; read by wetting,
+// coupling, io and view.
+//
+// Sheet coordinates: weft yarns run along x, warp yarns along y, the face is +z, the mid-plane is z = 0 and the
+// sheet's centre is the origin. `Placement` (below) puts the sheet into the world.
+// Node numbers: segments 0 .. segments-1 (yarn by yarn, in order along the yarn), then pores.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "imbibe/core/types.h"
+#include "imbibe/fabric/fibre.h"
+
+namespace imbibe {
+
+enum class Family : std::uint8_t { warp = 0, weft = 1 };
+
+// One kind of yarn, as laid into the cloth.
+struct YarnType {
+  Fibre fibre;
+  Real radius = 0;           // m, r_f of the drawn yarn
+  Real packing = 1;          // fibre share of the yarn's cross-section, phi_y; 1 = monofilament
+  Real linear_density = 0;   // kg/m, conditioned dry mass per length of yarn
+  bool monofilament = false; // true: no capillary water between fibres
+  Real tortuosity_squared = 4;      // tau^2 of the yarn's permeability, trials 2-10
+  Real absorption_coefficient = 0;  // kg/(m2 s^0.5), A_w for the Kuenzel form; 0 = the fibre's
+  Vector3<float> colour{0.93f, 0.91f, 0.86f};  // linear RGB when dry
+  Real void_share() const { return 1 - packing; }  // eps_y
+};
+
+enum class EdgeKind : std::uint8_t {
+  along_yarn,    // segment - next segment of the same yarn
+  crossing,      // warp segment - weft segment that touch at a crossing
+  segment_pore,  // segment - pore beside it
+  pore_pore,     // neighbouring pores in the plane, over a yarn
+};
+
+struct Edge {
+  Index a = 0, b = 0;  // nodes
+  EdgeKind kind = EdgeKind::along_yarn;
+};
+
+// Position and attitude of the flat sheet in the world: world = origin + x*u + y*v + z*n.
+struct Placement {
+  Vec3 origin{};
+  Vec3 u{1, 0, 0}, v{0, 1, 0}, n{0, 0, 1};
+  Vec3 to_world(const Vec3& p) const { return origin + p.x * u + p.y * v + p.z * n; }
+  Vec3 to_sheet(const Vec3& w) const { const Vec3 d = w - origin; return {dot(d, u), dot(d, v), dot(d, n)}; }
+};
+
+struct YarnNetwork {
+  // Sheet
+  Real size_x = 0, size_y = 0;    // m
+  Real thickness = 0;             // m, t: default 2 (r_warp + r_weft)
+  Real pitch_x = 0, pitch_y = 0;  // m, mean distance of neighbouring warp yarns (along x) and weft yarns (along y)
+  std::vector<YarnType> yarn_types;
+
+  // Yarns
+  std::vector<Family> yarn_family;
+  std::vector<Index> yarn_type;
+  std::vector<Index> yarn_first_segment;  // size yarns + 1; segments of yarn y: [first[y], first[y+1])
+  std::vector<Index> yarn_first_point;    // size yarns + 1; centre-line points of yarn y in `points`
+  std::vector<Vec3> points;               // crimped centre lines; `points_per_segment` steps per segment
+  int points_per_segment = 8;             // yarn with n segments has n*points_per_segment + 1 points
+
+  // Segments: half loops centred on crossings
+  std::vector<Index> segment_yarn;
+  std::vector<Vec3> segment_centre;
+  std::vector<Real> segment_length;       // m, arc length
+
+  // Pores: between four crossings
+  std::vector<Vec3> pore_centre;
+  std::vector<Real> pore_volume;          // m3, cell minus its yarns; > 0
+  std::vector<Real> pore_opening_x, pore_opening_y;  // m, free widths w = pitch - 2r between the yarns
+  std::vector<Real> pore_throat;          // m, r_t = w_x w_y / (w_x + w_y)
+  std::vector<Real> pore_area;            // m2, projected cell area p_x p_y that belongs to the pore
+
+  std::vector<Edge> edges;
+
+  std::size_t segments() const { return segment_yarn.size(); }
+  std::size_t pores() const { return pore_centre.size(); }
+  std::size_t nodes() const { return segments() + pores(); }
+  bool is_pore(std::size_t node) const { return node >= segments(); }
+  const YarnType& type_of_segment(std::size_t s) const { return yarn_types[yarn_type[segment_yarn[s]]]; }
+  Family family_of_segment(std::size_t s) const { return yarn_family[segment_yarn[s]]; }
+  const Vec3& node_centre(std::size_t node) const {
+    return is_pore(node) ? pore_centre[node - segments()] : segment_centre[node];
+  }
+};
+
+}  // namespace imbibe

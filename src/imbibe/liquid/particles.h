@@ -1,0 +1,51 @@
+// The state of the free liquid: equal-mass particles. Plain and copyable; arrays in sorted (cell) order, so an index
+// is valid only until the next step; `id` is for life.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "imbibe/core/types.h"
+
+namespace imbibe {
+
+// Bulk properties of a liquid. Data: liquids/*.yaml, with a source per value.
+struct LiquidKind {
+  std::string name = "water";
+  Real density = 998.2;           // kg/m3
+  Real viscosity = 1.002e-3;      // Pa s
+  Real surface_tension = 0.0728;  // N/m
+};
+
+// Where a particle lies (seed A section 6), from the gradient of the colour field.
+enum class ParticleClass : std::uint8_t { inside = 0, liquid_vapour = 1, liquid_solid = 2 };
+
+// 16-byte record that vector loops load as one row.
+struct alignas(16) Float4 {
+  float x = 0, y = 0, z = 0, w = 0;
+};
+
+struct Particles {
+  std::vector<Float4> position;  // m; w is scratch of the solver
+  std::vector<Float4> velocity;  // m/s; w is scratch of the solver
+  std::vector<Index> id;
+  std::vector<ParticleClass> kind;
+  std::vector<float> density;          // kg/m3, for output
+  std::vector<float> pressure;         // Pa, for output and exchange, time-averaged over a few steps
+  std::vector<float> warm_pressure;    // solver warm starts
+  std::vector<float> warm_divergence;
+
+  std::size_t size() const { return position.size(); }
+};
+
+struct Liquid {
+  LiquidKind kind;
+  Real particle_mass = 0;  // kg, the same for all
+  Index next_id = 0;
+  Particles particles;
+  Real spacing() const { return std::cbrt(particle_mass / kind.density); }  // m, dx
+  Real mass() const { return particle_mass * static_cast<Real>(particles.size()); }
+};
+
+}  // namespace imbibe

@@ -1,0 +1,29 @@
+// What the liquid feels of solids and of textile faces: a signed distance, a contact angle, friction.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "imbibe/core/types.h"
+#include "imbibe/geometry/shapes.h"
+
+namespace imbibe {
+
+struct WallMaterial {
+  Real contact_angle = pi / 2;  // rad, equilibrium or advancing
+  Real receding_angle = -1;     // rad; < 0: no hysteresis, same as contact_angle
+  Real friction = 1;            // 0 = free slip, 1 = the liquid's own viscosity acts at the wall (no slip)
+};
+
+// One wall for the duration of a step: not part of any state. `cos_contact_angle_at`, when set, replaces
+// material.contact_angle at a world point (a textile's face: angle by saturation).
+struct Wall {
+  const Shape* shape = nullptr;
+  WallMaterial material;
+  std::function<float(const Vec3&)> cos_contact_angle_at;
+  // The wall is passable from both sides (a textile sheet): particles on different sides do not see each other.
+  bool two_sided = false;
+};
+
+}  // namespace imbibe

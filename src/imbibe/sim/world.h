@@ -1,0 +1,68 @@
+// The whole simulation as one plain, copyable value: snapshot = copy, test = compare. Immutable parts are shared.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "imbibe/core/types.h"
+#include "imbibe/coupling/exchange_state.h"
+#include "imbibe/fabric/fabric.h"
+#include "imbibe/geometry/shapes.h"
+#include "imbibe/liquid/liquid_step.h"
+#include "imbibe/liquid/particles.h"
+#include "imbibe/liquid/source.h"
+#include "imbibe/liquid/wall.h"
+#include "imbibe/wetting/contents.h"
+#include "imbibe/wetting/wetting_step.h"
+
+namespace imbibe {
+
+struct SolidBody {
+  std::string name;
+  Shape shape;
+  WallMaterial material;
+  Vec3f colour{0.55f, 0.55f, 0.58f};
+};
+
+struct Textile {
+  std::string name;
+  std::shared_ptr<const Fabric> fabric;       // geometry and dry materials
+  std::shared_ptr<const WettingModel> model;  // conductances and capacities for this fabric and liquid
+  Placement placement;
+  Contents contents;
+  ExchangeState exchange;
+};
+
+// Where all the liquid is, kg. free + sorbed + yarn + pore + cell + waiting - owed + evaporated + left
+// = initial + supplied.
+struct Ledger {
+  Real initial_kg = 0;     // sorbed and other water in the textiles at the start
+  Real supplied_kg = 0;    // by sources
+  Real evaporated_kg = 0;  // to the air; negative when the fibres took vapour up on balance
+  Real left_kg = 0;        // particles that left the domain
+};
+
+struct World {
+  Real time = 0;            // s
+  std::uint64_t step = 0;
+  std::uint64_t seed = 1;
+  Vec3 gravity{0, 0, -9.81};
+  Air air;
+  Liquid liquid;
+  LiquidParams liquid_params;
+  std::vector<Source> sources;
+  std::vector<Textile> textiles;
+  std::vector<SolidBody> solids;
+  Ledger ledger;
+  Bounds domain;            // a particle outside is removed and counted in left_kg
+};
+
+// The masses of series.csv at one instant, kg (docs/run_folder.md). Sums in fixed order.
+struct MassBalance {
+  Real free = 0, sorbed = 0, yarn = 0, pore = 0, cell = 0, evaporated = 0, left = 0, supplied = 0, initial = 0;
+  Real error() const;       // |sum of parts - initial - supplied| / (initial + supplied); 0 when both are 0
+};
+MassBalance mass_balance(const World& world);
+
+}  // namespace imbibe
