@@ -11,6 +11,7 @@ namespace imbibe {
 struct ExchangeState {
   std::vector<Real> owed_kg;     // per node: taken from the liquid above, particles not yet removed
   std::vector<Real> waiting_kg;  // per node: released by the textile, not yet a particle
+  Real normal_force = 0;         // N, of the liquid on the sheet, averaged over about 2 ms
   Vec3 impulse{};                // N s, momentum given to the (fixed) textile since the start
   std::uint64_t contacts = 0;    // particle hits on yarns since the start
   std::uint64_t absorbed_particles = 0, released_particles = 0, bounces = 0;

@@ -7,6 +7,7 @@
 
 #include "imbibe/core/types.h"
 #include "imbibe/coupling/exchange_state.h"
+#include "imbibe/coupling/face_map.h"
 #include "imbibe/fabric/fabric.h"
 #include "imbibe/geometry/shapes.h"
 #include "imbibe/liquid/liquid_step.h"
@@ -30,8 +31,18 @@ struct Textile {
   std::shared_ptr<const Fabric> fabric;       // geometry and dry materials
   std::shared_ptr<const WettingModel> model;  // conductances and capacities for this fabric and liquid
   Placement placement;
+  std::shared_ptr<const FaceMap> faces;       // nodes by place, for the exchange with liquid on the faces
   Contents contents;
   ExchangeState exchange;
+};
+
+// How the two clocks go together: SPH steps (1e-5 - 1e-3 s) run inside textile steps, and stop while the liquid rests.
+struct Pace {
+  Real wetting_interval = 1e-4;  // s, the next textile step: grows and shrinks with the network's own suggestion
+  Real since_wetting = 0;        // s of liquid motion since the last textile step
+  bool resting = false;          // true: the free liquid is at rest and makes no SPH steps
+  Real calm_since = -1;          // s, world time since which the liquid is slow enough to rest; < 0: it is not
+  std::uint64_t particles_at_rest = 0;  // particles there were when it came to rest
 };
 
 // Where all the liquid is, kg. free + sorbed + yarn + pore + cell + waiting - owed + evaporated + left
@@ -55,6 +66,7 @@ struct World {
   std::vector<Textile> textiles;
   std::vector<SolidBody> solids;
   Ledger ledger;
+  Pace pace;
   Bounds domain;            // a particle outside is removed and counted in left_kg
 };
 

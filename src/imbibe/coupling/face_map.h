@@ -1,0 +1,48 @@
+// Which yarn segments and pores lie near a point of a sheet: nodes of the network sorted into square bins of the
+// sheet's plane. Immutable; built once per textile. Sheet coordinates (fabric/network.h).
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "imbibe/core/types.h"
+#include "imbibe/fabric/network.h"
+
+namespace imbibe {
+
+struct FaceMap {
+  Real reach = 0;       // m, support radius of the face kernel: liquid at a point touches nodes within it
+  Real bin = 0;         // m, side of a bin = reach
+  Real x0 = 0, y0 = 0;  // m, lower corner of the bins
+  int bins_x = 0, bins_y = 0;
+  std::vector<Index> first;      // size bins + 1
+  std::vector<Index> node;       // nodes bin by bin
+  std::vector<float> face_area;  // m2 per node: plan area that the node drains
+  std::vector<float> cos_advancing;  // per node: cosine of the advancing angle of the yarns there (area mean for pores)
+  std::vector<float> cos_receding;
+
+  // Calls visit(node) for the nodes of the 3 x 3 bins around (x, y): all nodes within reach and some beyond.
+  template <class Visit>
+  void near(Real x, Real y, Visit&& visit) const {
+    const int bx = static_cast<int>(std::floor((x - x0) / bin)), by = static_cast<int>(std::floor((y - y0) / bin));
+    for (int j = std::max(by - 1, 0); j <= std::min(by + 1, bins_y - 1); ++j)
+      for (int i = std::max(bx - 1, 0); i <= std::min(bx + 1, bins_x - 1); ++i) {
+        const std::size_t b = static_cast<std::size_t>(j) * bins_x + i;
+        for (Index k = first[b]; k < first[b + 1]; ++k) visit(node[k]);
+      }
+  }
+};
+
+// reach = 1.5 max(particle spacing, pitch): smooth over the particles' disorder, and never less than one crossing.
+FaceMap build_face_map(const YarnNetwork& network, Real particle_spacing);
+
+// Two-dimensional Wendland C2 kernel of support R: integral 1 over the plane. [1/m2]
+inline Real face_kernel(Real distance, Real reach) {
+  const Real q = distance / reach;
+  if (q >= 1) return 0;
+  const Real a = (1 - q) * (1 - q);
+  return 7 / (pi * reach * reach) * a * a * (1 + 4 * q);
+}
+
+}  // namespace imbibe
