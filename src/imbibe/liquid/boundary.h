@@ -1,0 +1,68 @@
+// What each particle sees of the solids, once per step.
+//
+//   lambda_i = integral of W(|x_i - y|) over the solid   [1]      G_i = grad_i lambda_i  [1/m], points into the solid
+//   several walls: lambda = 1 - prod_k (1 - lambda_k),  G = sum_k G_k prod_{l != k} (1 - lambda_l)
+// A wall is locally a half-space behind its nearest surface point; balls, cylinders and cones are corrected for their
+// curvature (kernel.h). Edges of boxes and cones and mesh details smaller than the support are not resolved.
+// A two-sided wall (a thin Box: a textile sheet) is a half-space on the particle's own side.
+// Tested in tests/liquid/boundary_test.cpp.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "imbibe/core/types.h"
+#include "imbibe/liquid/kernel.h"
+#include "imbibe/liquid/particles.h"
+#include "imbibe/liquid/wall.h"
+
+namespace imbibe {
+
+inline constexpr int walls_per_particle = 3;  // the nearest ones; more meet only in rare corners
+
+struct WallSample {
+  float distance = 0;           // m, < 0 inside the solid
+  Vec3f normal{};               // unit, out of the solid
+  float lambda = 0;             // of this wall alone
+  Vec3f gradient{};             // this wall's part of G (weighted as above: the samples' gradients add up to G)
+  float cos_contact_angle = 0;
+  float friction = 0;
+  Index wall = 0;               // index into the walls of this step
+};
+
+// Cache of one step; nothing here is state.
+struct Boundary {
+  struct Tile {
+    std::vector<WallSample> samples;
+    std::vector<std::uint16_t> first;  // per particle of the tile, and one end mark
+  };
+  std::vector<Tile> tiles;             // of default_tile particles
+  std::vector<Float4> wall;            // padded, per particle: xyz = G, w = lambda; 0 far from walls
+  std::vector<std::uint32_t> side;     // per particle: sides of two-sided walls (neighbours.h); empty without such walls
+  std::size_t near_walls = 0;          // particles with at least one sample
+
+  std::span<const WallSample> samples(std::size_t i) const {
+    const Tile& t = tiles[i / default_tile_size];
+    const std::size_t k = i % default_tile_size;
+    return {t.samples.data() + t.first[k], t.samples.data() + t.first[k + 1]};
+  }
+  static constexpr std::size_t default_tile_size = 512;
+};
+
+// Samples all walls within the support radius of each particle; position: padded, count particles.
+void sample_walls(Boundary& boundary, std::span<const Float4> position, std::size_t count, std::span<const Wall> walls,
+                  const Kernel& kernel);
+
+// impulse[wall] += scale * sum_i coefficient[i] * gradient of wall at i, in fixed order. With coefficient = pressure
+// acceleration factor k_i (a_i = -k_i G_i) and scale = m dt this is the impulse the liquid gives to each wall.
+void add_wall_impulse(const Boundary& boundary, std::span<const float> coefficient, Real scale,
+                      std::vector<Vec3>& impulse);
+
+// Positional safety net after the move from `before` to `position`: a particle that ended inside a solid, or beyond the
+// sheet it was in front of, is put back on the surface it entered through and loses its velocity into the solid. What
+// it lost, per wall, is added to impulse (N s). Returns the number of particles put back.
+std::size_t keep_outside(const Boundary& boundary, std::span<const Float4> before, std::span<Float4> position,
+                         std::span<Float4> velocity, std::size_t count, std::span<const Wall> walls, Real spacing,
+                         Real particle_mass, std::vector<Vec3>& impulse);
+
+}  // namespace imbibe

@@ -1,0 +1,39 @@
+// The arrays the passes of one liquid step share. Caches of the step, not state: sized in begin_fields, never shrunk, so
+// steps do not allocate once the particle count is steady. All are padded (padded_size, neighbours.h): whole slices can
+// be loaded and stored, and index `dummy` is the far dummy whose values stay 0 (position: far away).
+#pragma once
+
+#include <vector>
+
+#include "imbibe/liquid/boundary.h"
+#include "imbibe/liquid/neighbours.h"
+#include "imbibe/liquid/particles.h"
+
+namespace imbibe {
+
+struct LiquidFields {
+  std::size_t count = 0;
+  float spacing = 0;           // dx, m
+  float volume = 0;            // V = m/rho0 = dx^3, m3
+  float particle_mass = 0;     // kg
+  float rest_density = 0;      // kg/m3
+  Neighbours neighbours;
+  Boundary boundary;
+
+  std::vector<Float4> position;       // m; w free for the solver running
+  std::vector<Float4> position_swap;  // same xyz; for a solver that writes w while others read it
+  std::vector<Float4> velocity;       // m/s
+  std::vector<Float4> acceleration;   // m/s2, work space of the stage running
+  std::vector<Float4> force;          // m/s2: surface tension and contact line (written by the surface stage)
+  std::vector<float> filling;         // C_i + lambda_i: density / rest density, walls included
+  std::vector<float> colour;          // C_i = V sum W (own included), liquid only
+  std::vector<Float4> colour_gradient;  // xyz = V sum grad W over liquid neighbours [1/m], w free
+  std::vector<float> factor;          // solver's diagonal
+  std::vector<float> source;          // solver's right side
+  std::vector<std::uint8_t> surface;  // set by the class stage: 1 = free surface (pressure is prescribed there)
+};
+
+// Sizes every array for the sorted particles and copies position and velocity in.
+void begin_fields(LiquidFields& f, const Liquid& liquid);
+
+}  // namespace imbibe

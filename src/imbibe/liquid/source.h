@@ -1,0 +1,69 @@
+// Where liquid comes from: drops, boxes of liquid, and a timed dropper (a drop repeated).
+//
+// Particles are seeded on a lattice of the liquid's spacing. The supplied mass is exactly (number of particles) x
+// (particle mass); the number is the wanted volume over the particle volume, rounded, and the difference is carried to
+// the source's next drop, so a dropper's total is right to half a particle.
+// A drop that would overlap liquid already there waits until the place is free: never two particles in one place.
+#pragma once
+
+#include <string>
+
+#include "imbibe/core/parameter.h"
+#include "imbibe/core/types.h"
+#include "imbibe/geometry/bounds.h"
+#include "imbibe/liquid/particles.h"
+
+namespace imbibe {
+
+enum class SourceForm { drop, box };
+
+struct Source {
+  std::string name;
+  SourceForm form = SourceForm::drop;
+  Vec3 centre{};             // m
+  Real volume = 0;           // m3 of each drop; of a box, 0 = its size
+  Vec3 size{};               // m, of a box
+  Vec3 velocity{};           // m/s at birth
+  Real start = 0;            // s
+  Real interval = 0;         // s between drops of a dropper
+  int count = 1;             // drops
+
+  // Progress (state, saved in checkpoints).
+  int emitted = 0;           // drops
+  Real carried = 0;          // m3 owed to the next drop by rounding
+  Real supplied_kg = 0;
+};
+
+template <class V>
+void describe(V& v, Source& s) {
+  v.value("name", s.name, {.help = "name in the report"});
+  v.choice("form", s.form, {{"drop", SourceForm::drop}, {"box", SourceForm::box}}, "a ball or a box of liquid");
+  v.value("centre", s.centre, {.unit = "m", .shown = "mm", .required = true, .help = "centre at birth"});
+  v.value("volume", s.volume, {.unit = "m3", .shown = "uL", .min = 0, .help = "volume of each drop"});
+  v.value("size", s.size, {.unit = "m", .shown = "mm", .min = 0, .help = "edges of a box of liquid"});
+  v.value("velocity", s.velocity, {.unit = "m/s", .help = "velocity at birth"});
+  v.value("start", s.start, {.unit = "s", .min = 0, .help = "time of the first drop"});
+  v.value("interval", s.interval, {.unit = "s", .min = 0, .help = "time between the drops of a dropper"});
+  v.value("count", s.count, {.min = 1, .max = 1e6, .help = "number of drops of a dropper"});
+}
+
+struct EmitReport {
+  std::size_t particles = 0;
+  Real kg = 0;            // exactly particles * particle_mass
+  bool waiting = false;   // a drop is due, but its place is still taken
+};
+
+// Emits what is due in [t0, t1) into the liquid and advances the source's progress. Drops due earlier that had to wait
+// come first. New particles are appended (unsorted) with new ids.
+EmitReport emit(Source& source, Liquid& liquid, Real t0, Real t1);
+
+// The number of particles of drop `n` (counted from 0) of a source that starts with nothing carried; what `check` prints.
+std::size_t particle_count(const Source& source, const Liquid& liquid);
+
+// Where a source's drop will lie.
+Bounds bounds_of(const Source& source);
+
+// Time of the next drop, or infinity when the source is done.
+Real next_emission(const Source& source);
+
+}  // namespace imbibe
