@@ -1,0 +1,67 @@
+// The one list of everything in a World that changes while it runs. state_hash() and the checkpoint are visitors of
+// it: a new field of the state is added here and nowhere else.
+//
+// A visitor has:
+//   void group(const std::string& name);          the fields that follow belong to this path, e.g. "textiles/swatch"
+//   template <class T> void value(const char* name, T& x);               scalars (arithmetic, enum, Vec3)
+//   template <class T> void array(const char* name, std::vector<T>& x);  arithmetic, enum, Vec3, Float4
+// The same function serves const worlds: the fields are then const.
+//
+// Not state, and so not here: what the scene builds (fabric, model, placement, solids, liquid kind, parameters, domain).
+#pragma once
+
+#include <string>
+
+#include "imbibe/sim/world.h"
+
+namespace imbibe {
+
+template <class Visitor, class AnyWorld>
+void visit_state(Visitor& v, AnyWorld& world) {
+  v.group("world");
+  v.value("time", world.time);
+  v.value("step", world.step);
+  v.value("seed", world.seed);
+  v.value("gravity", world.gravity);
+
+  v.group("air");
+  v.value("temperature", world.air.temperature);
+  v.value("humidity", world.air.humidity);
+  v.value("mass_transfer", world.air.mass_transfer);
+
+  v.group("ledger");
+  v.value("initial_kg", world.ledger.initial_kg);
+  v.value("supplied_kg", world.ledger.supplied_kg);
+  v.value("evaporated_kg", world.ledger.evaporated_kg);
+  v.value("left_kg", world.ledger.left_kg);
+
+  v.group("liquid");
+  v.value("particle_mass", world.liquid.particle_mass);
+  v.value("next_id", world.liquid.next_id);
+  auto& particles = world.liquid.particles;
+  v.array("position", particles.position);
+  v.array("velocity", particles.velocity);
+  v.array("id", particles.id);
+  v.array("kind", particles.kind);
+  v.array("density", particles.density);
+  v.array("pressure", particles.pressure);
+  v.array("warm_pressure", particles.warm_pressure);
+  v.array("warm_divergence", particles.warm_divergence);
+
+  for (auto& textile : world.textiles) {
+    v.group("textiles/" + textile.name);
+    v.array("sorbed_kg", textile.contents.sorbed_kg);
+    v.array("liquid_kg", textile.contents.liquid_kg);
+    v.array("shell_regain", textile.contents.shell_regain);
+    v.array("reached_saturation", textile.contents.reached_saturation);
+    v.array("owed_kg", textile.exchange.owed_kg);
+    v.array("waiting_kg", textile.exchange.waiting_kg);
+    v.value("impulse", textile.exchange.impulse);
+    v.value("contacts", textile.exchange.contacts);
+    v.value("absorbed_particles", textile.exchange.absorbed_particles);
+    v.value("released_particles", textile.exchange.released_particles);
+    v.value("bounces", textile.exchange.bounces);
+  }
+}
+
+}  // namespace imbibe
