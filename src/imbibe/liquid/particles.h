@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,13 @@ struct Particles {
   std::size_t size() const { return position.size(); }
 };
 
+// Calls visit(array) for every array of the particles: the one list of them, for sorting, removing and appending.
+template <class AnyParticles, class Visit>
+void visit_arrays(AnyParticles& p, Visit&& visit) {
+  visit(p.position), visit(p.velocity), visit(p.id), visit(p.kind), visit(p.density), visit(p.pressure),
+      visit(p.warm_pressure), visit(p.warm_divergence);
+}
+
 struct Liquid {
   LiquidKind kind;
   Real particle_mass = 0;  // kg, the same for all
@@ -47,5 +55,11 @@ struct Liquid {
   Real spacing() const { return std::cbrt(particle_mass / kind.density); }  // m, dx
   Real mass() const { return particle_mass * static_cast<Real>(particles.size()); }
 };
+
+// Appends a particle with a new id, at rest density and without warm start.
+void add_particle(Liquid& liquid, const Vec3& position, const Vec3& velocity);
+
+// Removes the particles with dead[i] != 0; the others keep their order. Returns how many were removed.
+std::size_t remove_particles(Particles& particles, std::span<const std::uint8_t> dead);
 
 }  // namespace imbibe

@@ -1,0 +1,129 @@
+#include "imbibe/coupling/footprint.h"
+
+#include <numeric>
+
+namespace imbibe {
+namespace {
+
+// Smallest member of the set that i belongs to; paths are halved on the way.
+Index root_of(std::vector<Index>& parent, Index i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+void unite(std::vector<Index>& parent, Index a, Index b) {
+  a = root_of(parent, a), b = root_of(parent, b);
+  if (a < b) parent[b] = a;
+  else parent[a] = b;
+}
+
+void clear(Footprint& f, std::size_t nodes) {
+  for (const FaceSupply& supply : f.supplies) f.supply_of_node[supply.node] = no_index;
+  f.supply_of_node.resize(nodes, no_index);
+  f.particle.clear(), f.patch_of.clear(), f.on_back.clear(), f.first_link.assign(1, 0), f.links.clear();
+  f.supplies.clear(), f.supply_patch.clear(), f.patches.clear();
+}
+
+// Links of one touching particle at sheet position p, and its share of the wetted area of the nodes.
+void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Real particle_area, Footprint& f) {
+  const std::size_t begin = f.links.size();
+  Real total = 0;
+  map.near(p.x, p.y, [&](Index k) {
+    const Vec3& c = network.node_centre(k);
+    const Real w = face_kernel(std::hypot(p.x - c.x, p.y - c.y), map.reach);
+    if (w <= 0) return;
+    f.links.push_back({k, w * map.face_area[k]});
+    total += f.links.back().share;
+    if (f.supply_of_node[k] == no_index) {
+      f.supply_of_node[k] = static_cast<Index>(f.supplies.size());
+      f.supplies.push_back({.node = k});
+    }
+    f.supplies[f.supply_of_node[k]].wetted_share += particle_area * w;
+  });
+  for (std::size_t l = begin; l < f.links.size(); ++l) f.links[l].share /= total;
+  f.first_link.push_back(static_cast<Index>(f.links.size()));
+}
+
+// Joins particles through their common nodes and numbers the patches.
+void find_patches(const ExchangeState& exchange, Real particle_area, Real particle_mass, Footprint& f) {
+  std::vector<Index> parent(f.particle.size()), owner(f.supplies.size(), no_index);
+  std::iota(parent.begin(), parent.end(), Index{0});
+  for (Index p = 0; p < f.particle.size(); ++p)
+    for (Index l = f.first_link[p]; l < f.first_link[p + 1]; ++l) {
+      Index& first = owner[f.supply_of_node[f.links[l].node]];
+      if (first == no_index) first = p;
+      else unite(parent, first, p);
+    }
+  f.patch_of.assign(f.particle.size(), no_index);
+  for (Index p = 0; p < f.particle.size(); ++p) {
+    const Index root = root_of(parent, p);  // the smallest member, so it has its number already
+    if (root == p) {
+      f.patch_of[p] = static_cast<Index>(f.patches.size());
+      f.patches.emplace_back();
+    } else {
+      f.patch_of[p] = f.patch_of[root];
+    }
+    FootprintPatch& patch = f.patches[f.patch_of[p]];
+    ++patch.particles;
+    patch.area += particle_area;
+    patch.touching_kg += particle_mass;
+  }
+  f.supply_patch.resize(f.supplies.size());
+  for (std::size_t s = 0; s < f.supplies.size(); ++s) {
+    f.supply_patch[s] = f.patch_of[owner[s]];
+    f.patches[f.supply_patch[s]].owed_kg += exchange.owed_kg[f.supplies[s].node];
+  }
+}
+
+void set_pressures(const Liquid& liquid, const FaceMap& map, const ExchangeState& exchange, Footprint& f) {
+  Real area = 0;
+  for (const FootprintPatch& patch : f.patches) area += patch.area;
+  std::vector<Real> cosine(f.patches.size(), 0), weight(f.patches.size(), 0);
+  for (std::size_t s = 0; s < f.supplies.size(); ++s) {
+    cosine[f.supply_patch[s]] += f.supplies[s].wetted_share * map.cos_advancing[f.supplies[s].node];
+    weight[f.supply_patch[s]] += f.supplies[s].wetted_share;
+  }
+  for (std::size_t i = 0; i < f.patches.size(); ++i) {
+    FootprintPatch& patch = f.patches[i];
+    const Real mean = weight[i] > 0 ? std::clamp(cosine[i] / weight[i], -1.0, 1.0) : 0;
+    const Real radius = std::sqrt(patch.area / pi);
+    patch.pressure = std::max(exchange.normal_force, 0.0) / area +
+                     2 * liquid.kind.surface_tension * std::sqrt(1 - mean * mean) / radius;
+  }
+}
+
+}  // namespace
+
+void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
+                    const ExchangeState& exchange, Footprint& f) {
+  clear(f, network.nodes());
+  const Real dx = liquid.spacing(), reach_z = 0.5 * network.thickness + touch_distance(dx);
+  const Real half_x = 0.5 * network.size_x, half_y = 0.5 * network.size_y;
+  for (std::size_t i = 0; i < liquid.particles.size(); ++i) {
+    const Float4& x = liquid.particles.position[i];
+    const Vec3 p = placement.to_sheet({x.x, x.y, x.z});
+    if (std::abs(p.z) > reach_z || std::abs(p.x) > half_x || std::abs(p.y) > half_y) continue;
+    const std::size_t before = f.links.size();
+    add_links(network, map, p, dx * dx, f);
+    if (f.links.size() == before) {  // beside the last node of the border: nothing to touch
+      f.first_link.pop_back();
+      continue;
+    }
+    f.particle.push_back(static_cast<Index>(i));
+    f.on_back.push_back(p.z < 0);
+  }
+  find_patches(exchange, dx * dx, liquid.particle_mass, f);
+  set_pressures(liquid, map, exchange, f);
+  for (std::size_t p = 0; p < f.particle.size(); ++p) {
+    const FootprintPatch& patch = f.patches[f.patch_of[p]];
+    const Real left = liquid.particle_mass * std::clamp(1 - patch.owed_kg / patch.touching_kg, 0.0, 1.0);
+    for (Index l = f.first_link[p]; l < f.first_link[p + 1]; ++l)
+      f.supplies[f.supply_of_node[f.links[l].node]].available_kg += f.links[l].share * left;
+  }
+  for (std::size_t s = 0; s < f.supplies.size(); ++s) {
+    f.supplies[s].wetted_share = std::min(f.supplies[s].wetted_share, 1.0);
+    f.supplies[s].pressure = f.patches[f.supply_patch[s]].pressure;
+  }
+}
+
+}  // namespace imbibe

@@ -1,0 +1,30 @@
+#include "imbibe/liquid/particles.h"
+
+#include "imbibe/core/error.h"
+
+namespace imbibe {
+
+void add_particle(Liquid& liquid, const Vec3& position, const Vec3& velocity) {
+  Particles& p = liquid.particles;
+  const std::size_t size = p.size() + 1;
+  visit_arrays(p, [size](auto& array) { array.resize(size); });
+  p.position.back() = {static_cast<float>(position.x), static_cast<float>(position.y), static_cast<float>(position.z), 0};
+  p.velocity.back() = {static_cast<float>(velocity.x), static_cast<float>(velocity.y), static_cast<float>(velocity.z), 0};
+  p.id.back() = liquid.next_id++;
+  p.kind.back() = ParticleClass::inside;
+  p.density.back() = static_cast<float>(liquid.kind.density);
+}
+
+std::size_t remove_particles(Particles& particles, std::span<const std::uint8_t> dead) {
+  const std::size_t before = particles.size();
+  IMBIBE_ASSERT(dead.size() == before);
+  visit_arrays(particles, [&](auto& array) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < before; ++i)
+      if (dead[i] == 0) array[kept++] = array[i];
+    array.resize(kept);
+  });
+  return before - particles.size();
+}
+
+}  // namespace imbibe
