@@ -26,9 +26,10 @@ struct Contents {
 // Liquid resting on a face of the textile over one node, as the coupling layer sees it in one exchange step.
 struct FaceSupply {
   Index node = 0;
-  Real wetted_share = 0;  // 0..1, share of the node's face that is covered
-  Real pressure = 0;      // Pa, of the liquid at the face
-  Real available_kg = 0;  // the most that may be taken in this step
+  Real wetted_share = 0;    // 0..1, share of the node's face that is covered
+  Real pressure = 0;        // Pa, of the liquid at the face
+  Real available_kg = 0;    // the most that may be taken in this step
+  bool from_below = false;  // the liquid stands at the lower face (-z of the sheet): its pore fills upwards
 };
 
 }  // namespace imbibe

@@ -1,0 +1,187 @@
+// A yarn network with one liquid in it: what every node can hold and how easily liquid passes every edge.
+// Derived once from geometry, materials and liquid; immutable afterwards (states are in Contents).
+//
+// Yarn (family of segments)      formula                                                    source
+//   void share        eps_y      1 - phi_y
+//   axial permeability   K_a     (8 R_f^2/53) eps_y^3/phi_y^2 / tau^2                        Gebart 1992, hexagonal
+//   transverse           K_t     0.231 R_f^2 (sqrt(0.9069/phi_y) - 1)^(5/2) / tau^2          Gebart 1992
+//   mean suction         P_h     gamma cos(theta_a + alpha) 2 phi_y/(R_f eps_y)              wetted perimeter / void area
+//   entry suction        P_e     P_h 0.5^(1/lambda), so that P_c(1/2) = P_h
+// Pore (between four crossings)
+//   throat               r_t     w_x w_y/(w_x + w_y)
+//   entry suction        P_e,p   2 gamma cos(theta)/r_t, theta the Cassie mean over the yarns around it
+//   to emerge            P_open  4 gamma sin(theta)/p_mean                                   entry.h
+// tau^2 is the one number per yarn that geometry does not give (2-10, default 4); alpha was calibrated on one class of
+// cloth (plain polyester) and is a plain parameter.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imbibe/core/parameter.h"
+#include "imbibe/core/types.h"
+#include "imbibe/fabric/network.h"
+#include "imbibe/wetting/contents.h"
+
+namespace imbibe {
+
+// The liquid as wetting sees it. Angles below zero: take each fibre's own.
+struct WettingLiquid {
+  Real density = 998.2;           // kg/m3
+  Real viscosity = 1.002e-3;      // Pa s
+  Real surface_tension = 0.0728;  // N/m
+  Real advancing_angle = -1;      // rad, on every fibre; < 0: the fibre's
+  Real receding_angle = -1;       // rad, on every fibre; < 0: the fibre's
+};
+
+enum class TransportModel { physical, kunzel, as_printed };
+enum class SorptionModel { none, linear, shells };
+enum class SurfaceTemperature { isothermal, wet_bulb };
+
+struct WettingParams {
+  TransportModel model = TransportModel::physical;
+  Real crossing_factor = 3;              // eta_c, times the contact patch's own conductance; 0 = no crossing
+  Real pore_divergence = radians(10);    // alpha, added to theta_a inside a yarn
+  Real yarn_size_index = 5;              // lambda of Brooks-Corey between the fibres
+  Real pore_size_index = 2;              // lambda_p of the pores between yarns (corner menisci)
+  Real yarn_overfill = 0.02;             // delta: a bulging yarn holds this much more than its voids
+  Real pore_overfill = 0.2;              // delta: meniscus of a pore that is about to emerge
+  bool pores = true;                     // pores between yarns take part
+  bool hysteresis = false;               // fill with theta_a, drain with theta_r
+  bool evaporation = true;
+  SurfaceTemperature surface_temperature = SurfaceTemperature::isothermal;
+  bool swelling = true;
+  SorptionModel sorption = SorptionModel::linear;
+  int shells = 12;                       // radial shells of a fibre, sorption = shells
+  Real wetted_at = 0.1;                  // saturation from which all fibres of a segment are wetted
+  Real redistribution_factor = 0.1;      // Kuenzel: D_ww / D_ws once nothing supplies the cloth
+  Real printed_pore_velocity = 1e-3;     // m/s, U of eq. 10 as printed
+};
+
+template <class V>
+void describe(V& v, WettingParams& p) {
+  v.choice("model", p.model,
+           {{"physical", TransportModel::physical},
+            {"kunzel", TransportModel::kunzel},
+            {"as_printed", TransportModel::as_printed}},
+           "how liquid moves along yarns: Darcy with Brooks-Corey, Kuenzel's diffusivity from A_w, or the printed eq. 7");
+  v.value("crossing_factor", p.crossing_factor,
+          {.min = 0, .max = 1000, .help = "eta_c: conductance of a crossing over that of its contact patch; 0 = none"});
+  v.value("pore_divergence_deg", p.pore_divergence,
+          {.unit = "rad", .shown = "deg", .min = 0, .max = radians(30),
+           .help = "alpha: fibres that cross and diverge raise the angle the meniscus must overcome"});
+  v.value("yarn_size_index", p.yarn_size_index,
+          {.min = 0.5, .max = 50, .help = "Brooks-Corey lambda of the voids between fibres"});
+  v.value("pore_size_index", p.pore_size_index,
+          {.min = 0.5, .max = 50, .help = "Brooks-Corey lambda of the pores between yarns"});
+  v.value("yarn_overfill", p.yarn_overfill, {.min = 1e-3, .max = 0.5, .help = "over-full share of a bulging yarn"});
+  v.value("pore_overfill", p.pore_overfill,
+          {.min = 1e-3, .max = 1, .help = "over-full share of a pore whose meniscus is about to emerge"});
+  v.value("pores", p.pores, {.help = "pores between yarns take part"});
+  v.value("hysteresis", p.hysteresis, {.help = "fill with the advancing, drain with the receding angle"});
+  v.value("evaporation", p.evaporation, {.help = "exchange vapour with the air at both faces"});
+  v.choice("surface_temperature", p.surface_temperature,
+           {{"isothermal", SurfaceTemperature::isothermal}, {"wet_bulb", SurfaceTemperature::wet_bulb}},
+           "temperature of an evaporating surface");
+  v.value("swelling", p.swelling, {.help = "wet fibres swell, pores shrink"});
+  v.choice("sorption", p.sorption,
+           {{"none", SorptionModel::none}, {"linear", SorptionModel::linear}, {"shells", SorptionModel::shells}},
+           "water into the fibre substance: linear driving force or radial shells");
+  v.value("shells", p.shells, {.min = 4, .max = 64, .help = "radial shells per fibre"});
+  v.value("wetted_at", p.wetted_at,
+          {.min = 0, .max = 1, .above_min = true, .help = "saturation from which all fibres of a segment are wetted"});
+  v.value("redistribution_factor", p.redistribution_factor,
+          {.min = 0, .max = 1, .help = "Kuenzel: D_ww / D_ws once nothing supplies the cloth"});
+  v.value("printed_pore_velocity", p.printed_pore_velocity,
+          {.unit = "m/s", .min = 0, .max = 10, .help = "U of eq. 10 in the model as printed"});
+}
+
+// One yarn type with the liquid in it.
+struct YarnWetting {
+  bool wets = false;         // holds and carries liquid between its fibres
+  Real void_share = 0;       // eps_y
+  Real axial = 0, transverse = 0;  // m2, permeabilities
+  Real entry = 0;            // Pa, P_e of filling
+  Real entry_receding = 0;   // Pa, P_e of draining (hysteresis)
+  Real open = 0;             // Pa, pressure at which a full yarn gives liquid off
+  Real cos_advancing = 0;    // of the fibre surface
+  Real diffusivity = 0;      // m2/s at saturation: Kuenzel 3.8 (A_w/w_f)^2, or eq. 7 at c_l = 0
+  Real printed_share = 0;    // c_s of eq. 7: liquid volume per yarn volume
+  Real sorption_rate = 0;    // 1/s, k = 8 D_f/R_f^2
+  Real swelling_regain = 0;  // kg/kg, most that the fibre substance takes
+  Real regain_65 = 0;
+  Real area_swelling = 0;
+};
+
+struct WettingEdge {
+  Index a = 0, b = 0;
+  EdgeKind kind = EdgeKind::along_yarn;
+  bool same_material = true;
+  // physical: m3/(Pa s). kunzel, as_printed: m (area/length x void share), multiplied by a diffusivity. Crossing of
+  // different materials: `conductance` is the half link on a's side, `conductance_b` on b's.
+  Real conductance = 0;
+  Real conductance_b = 0;
+  Real valve = 0;     // Pa, P_open of a pore-pore link
+  Vec3 offset{};      // m, centre of b minus centre of a, sheet coordinates
+};
+
+struct WettingModel {
+  WettingParams params;
+  WettingLiquid liquid;
+  std::size_t segments = 0, pores = 0;
+  std::size_t nodes() const { return segments + pores; }
+  Real thickness = 0;  // m
+  Real area = 0;       // m2 of the sheet, one face
+
+  // Materials
+  std::vector<Fibre> fibres;          // per yarn type
+  std::vector<YarnWetting> yarns;     // per yarn type
+
+  // Segments
+  std::vector<Index> segment_type;
+  std::vector<Real> dry_mass;         // kg, dry fibre
+  std::vector<Real> yarn_volume;      // m3, pi r^2 length: fibres and voids
+  std::vector<Real> supply_conductance;  // per node: liquid on the face -> node, units as WettingEdge
+  std::vector<Real> vapour_area;      // m2, per node, both faces
+
+  // Pores
+  std::vector<Real> pore_throat, pore_entry, pore_entry_receding, pore_open, pore_breakthrough;
+  std::vector<Real> pore_mouth;       // m2, w_x w_y
+  std::vector<char> pore_wets;
+
+  // Nodes
+  std::vector<Real> volume;           // m3 that s = 1 means: voids of the yarn, or the pore (both unswollen)
+  std::vector<Real> entry, entry_receding, open, overfill, size_index;  // per node, as above
+  std::vector<Vec3> centre;
+
+  // Edges and, for each node, its entries in them (fixed compressed rows)
+  std::vector<WettingEdge> edges;
+  std::vector<Index> row_start;       // nodes + 1
+  std::vector<Index> row_edge, row_other;
+};
+
+// Throws InputError where network and parameters make no model (pores without volume, a yarn with no radius, ...).
+WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams& params, const WettingLiquid& liquid);
+
+// Fibres at their regain in the air, no liquid between them.
+Contents conditioned_contents(const WettingModel& model, const Air& air);
+
+// Volume that saturation 1 means now, swelling counted (m3).
+Real current_volume(const WettingModel& model, const Contents& contents, std::size_t node);
+
+// Liquid per what the node holds when full: 0 .. 1 + overfill. A segment that holds no capillary water (monofilament,
+// fibres that do not wet): its sorbed water above zero per swelling regain.
+Real saturation(const WettingModel& model, const Contents& contents, std::size_t node);
+
+// Liquid pressure of the node, Pa (negative: suction).
+Real node_pressure(const WettingModel& model, const Contents& contents, std::size_t node);
+
+// kg water per kg dry fibre of a segment.
+Real node_regain(const WettingModel& model, const Contents& contents, std::size_t segment);
+
+// Sums in fixed order, kg.
+Real total_sorbed_kg(const WettingModel& model, const Contents& contents);
+Real total_yarn_kg(const WettingModel& model, const Contents& contents);
+Real total_pore_kg(const WettingModel& model, const Contents& contents);
+
+}  // namespace imbibe

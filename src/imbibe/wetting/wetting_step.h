@@ -1,0 +1,45 @@
+// One step of a textile's wetting: sorption, transport on the network, evaporation; implicit, mass exact.
+//
+// Order: sorption over half the step, vapour exchange, transport (backward Euler and Newton on all wet nodes), sorption
+// over the other half. Transport takes liquid from `supplies` by complementarity: inflow = min(law x dt, available)
+// stands inside the equations, so nothing is rescaled afterwards. A step that does not converge is cut and repeated
+// inside; masses are updated from edge flows only, so they add up to rounding whatever the tolerance.
+// Tested in tests/wetting/wetting_step_test.cpp.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "imbibe/wetting/contents.h"
+#include "imbibe/wetting/wetting_model.h"
+
+namespace imbibe {
+
+// Liquid that left a node to the outside because its pressure passed P_open; the caller owns it now.
+struct ReleasedLiquid {
+  Index node = 0;
+  Real kg = 0;
+};
+
+struct WettingReport {
+  Real advanced_s = 0;          // how far it came; = dt unless `converged` is false
+  bool converged = true;
+  Real evaporated_kg = 0;       // to the air; negative when fibres took vapour up on balance
+  Real taken_kg = 0;            // from all supplies, net
+  std::vector<ReleasedLiquid> released;
+  int newton_iterations = 0, linear_iterations = 0;
+  int substeps = 0, rejected = 0;
+  std::size_t active_nodes = 0; // most nodes in one solve
+  Real largest_change = 0;      // of saturation in one substep
+  Real suggested_step = 0;      // s, for the next call
+};
+
+// Advances `contents` by dt. taken_kg[i] (same length as supplies) is set to what supply i gave, >= 0, or was given
+// back, < 0; it never exceeds available_kg. `gravity` in sheet coordinates, m/s2.
+WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
+                           std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt);
+
+// A first step when no report is at hand: no node changes its saturation by more than about 0.3, within [1e-4, 300] s.
+Real suggested_wetting_step(const WettingModel& model, const Contents& contents, const Air& air, const Vec3& gravity);
+
+}  // namespace imbibe
