@@ -14,11 +14,11 @@ namespace imbibe {
 
 // One thing that is wrong with the input. line and column are 1-based; 0 = not known.
 struct Problem {
-  std::string file;
+  std::string file{};
   int line = 0;
   int column = 0;
-  std::string key;      // dotted path in the file, e.g. textiles[0].warp.diameter; may be empty
-  std::string message;  // what is wrong and what would be right
+  std::string key{};    // dotted path in the file, e.g. textiles[0].warp.diameter; may be empty
+  std::string message{};  // what is wrong and what would be right
 
   // `file:line:column: error: key: message`
   std::string text() const;
