@@ -7,7 +7,8 @@
 //   template <class T> void array(const char* name, std::vector<T>& x);  arithmetic, enum, Vec3, Float4
 // The same function serves const worlds: the fields are then const.
 //
-// Not state, and so not here: what the scene builds (fabric, model, placement, solids, liquid kind, parameters, domain).
+// Not state, and so not here: what the scene builds (fabric, model, placement, solids, liquid kind, parameters,
+// domain, and what a source is to emit).
 #pragma once
 
 #include <string>
@@ -47,6 +48,13 @@ void visit_state(Visitor& v, AnyWorld& world) {
   v.array("pressure", particles.pressure);
   v.array("warm_pressure", particles.warm_pressure);
   v.array("warm_divergence", particles.warm_divergence);
+
+  for (std::size_t i = 0; i < world.sources.size(); ++i) {
+    v.group("sources/" + std::to_string(i));
+    v.value("emitted", world.sources[i].emitted);
+    v.value("carried", world.sources[i].carried);
+    v.value("supplied_kg", world.sources[i].supplied_kg);
+  }
 
   for (auto& textile : world.textiles) {
     v.group("textiles/" + textile.name);
