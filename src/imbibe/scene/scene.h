@@ -1,0 +1,310 @@
+// A scene as plain data, described once (core/parameter.h): what a scene file may say, with units, ranges, defaults.
+// Reference of all keys: docs/reference/parameters.md, generated from these descriptions.
+//
+// The models' own parameters are described beside the models (FabricSpec, WettingParams, LiquidParams, ShapeSpec,
+// PictureOptions, MeasureParams) and only nested here.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imbibe/core/parameter.h"
+#include "imbibe/core/types.h"
+#include "imbibe/fabric/fabric.h"
+#include "imbibe/geometry/shape_spec.h"
+#include "imbibe/liquid/liquid_step.h"
+#include "imbibe/scene/document.h"
+#include "imbibe/scene/picture_options.h"
+#include "imbibe/sim/measures.h"
+#include "imbibe/wetting/wetting_model.h"
+
+namespace imbibe {
+
+struct AirSpec {
+  Real temperature = Air{}.temperature;      // K
+  Real humidity = Air{}.humidity;            // 1
+  Real mass_transfer = Air{}.mass_transfer;  // m/s
+};
+
+template <class V>
+void describe(V& v, AirSpec& p) {
+  v.value("temperature", p.temperature,
+          {.unit = "K", .shown = "degC", .min = 263.15, .max = 373.15, .help = "temperature of air, cloth and liquid"});
+  v.value("humidity", p.humidity,
+          {.unit = "1", .shown = "%", .min = 0, .max = 1, .help = "relative humidity; the fibres start in balance with it"});
+  v.value("mass_transfer", p.mass_transfer,
+          {.unit = "m/s", .shown = "mm/s", .min = 0, .max = 1,
+           .help = "vapour transfer coefficient at the cloth's faces: 3 mm/s in still air, 10 mm/s in a draught"});
+}
+
+// A liquid of the library by name, with single properties changed if wanted; all three given: a liquid of its own.
+struct LiquidKindSpec {
+  std::string name = "water";
+  std::optional<Real> density, viscosity, surface_tension;  // kg/m3, Pa s, N/m
+};
+
+template <class V>
+void describe(V& v, LiquidKindSpec& p) {
+  if constexpr (requires { v.short_form(""); }) v.short_form("name");
+  v.value("name", p.name, {.help = "a liquid of liquids/*.yaml; any name when all three properties are given"});
+  v.value("density", p.density, {.unit = "kg/m3", .min = 100, .max = 20000, .help = "in place of the library's"});
+  v.value("viscosity", p.viscosity,
+          {.unit = "Pa s", .shown = "mPa s", .min = 0, .max = 1000, .help = "dynamic, in place of the library's"});
+  v.value("surface_tension", p.surface_tension,
+          {.unit = "N/m", .shown = "mN/m", .min = 0, .max = 1, .help = "against air, in place of the library's"});
+}
+
+struct DropSpec {
+  std::string name;
+  Vec3 centre{};      // m
+  Real volume = 0;    // m3
+  Vec3 velocity{};    // m/s
+  Real start = 0;     // s
+};
+
+template <class V>
+void describe(V& v, DropSpec& p) {
+  v.value("name", p.name, {.help = "name in the report"});
+  v.value("centre", p.centre, {.unit = "m", .shown = "mm", .required = true, .help = "centre of the ball at its start"});
+  v.value("volume", p.volume,
+          {.unit = "m3", .shown = "uL", .min = 0, .max = 1, .above_min = true, .required = true, .help = "volume"});
+  v.value("velocity", p.velocity, {.unit = "m/s", .min = -100, .max = 100, .help = "velocity at its start"});
+  v.value("start", p.start, {.unit = "s", .min = 0, .help = "when it appears"});
+}
+
+struct LiquidBoxSpec {
+  std::string name;
+  Vec3 centre{};    // m
+  Vec3 size{};      // m
+  Vec3 velocity{};  // m/s
+  Real start = 0;   // s
+};
+
+template <class V>
+void describe(V& v, LiquidBoxSpec& p) {
+  v.value("name", p.name, {.help = "name in the report"});
+  v.value("centre", p.centre, {.unit = "m", .shown = "mm", .required = true, .help = "centre of the box"});
+  v.value("size", p.size,
+          {.unit = "m", .shown = "mm", .min = 0, .max = 100, .above_min = true, .required = true,
+           .help = "lengths of its edges"});
+  v.value("velocity", p.velocity, {.unit = "m/s", .min = -100, .max = 100, .help = "velocity at its start"});
+  v.value("start", p.start, {.unit = "s", .min = 0, .help = "when it appears"});
+}
+
+struct DropperSpec {
+  DropSpec drop;
+  Real interval = 1;  // s
+  int count = 1;
+};
+
+template <class V>
+void describe(V& v, DropperSpec& p) {
+  describe(v, p.drop);
+  v.value("interval", p.interval,
+          {.unit = "s", .min = 0, .above_min = true, .required = true, .help = "time from one drop to the next"});
+  v.value("count", p.count, {.min = 1, .max = 1e6, .required = true, .help = "number of drops"});
+}
+
+struct LiquidSpec {
+  LiquidKindSpec kind;
+  std::optional<Real> particle_mass;  // kg
+  std::vector<DropSpec> drops;
+  std::vector<LiquidBoxSpec> boxes;
+  std::vector<DropperSpec> droppers;
+  LiquidParams solver;
+};
+
+template <class V>
+void describe(V& v, LiquidSpec& p) {
+  v.group("kind", p.kind, "which liquid: a name such as water, or a map that changes its properties");
+  v.value("particle_mass", p.particle_mass,
+          {.unit = "kg", .shown = "mg", .min = 1e-15, .max = 1,
+           .help = "mass of one particle: the resolution of the liquid. Needed when there is any liquid"});
+  v.list("drops", p.drops, "drops of liquid, each once");
+  v.list("boxes", p.boxes, "boxes of liquid");
+  v.list("droppers", p.droppers, "drops that repeat at an interval");
+  v.group("solver", p.solver, "accuracy of the flow solver");
+}
+
+enum class SheetKind { fixed, soft };
+
+struct SheetSpec {
+  SheetKind kind = SheetKind::fixed;
+};
+
+template <class V>
+void describe(V& v, SheetSpec& p) {
+  if constexpr (requires { v.short_form(""); }) v.short_form("kind");
+  v.choice("kind", p.kind, {{"fixed", SheetKind::fixed}}, "fixed: a flat sheet that does not move");
+  if constexpr (requires { v.unavailable("", ""); })
+    v.unavailable("soft", "a soft, moving sheet is not available in this version; write `sheet: fixed`");
+}
+
+enum class WettingKind { network, none };
+
+struct WettingSpec {
+  WettingKind kind = WettingKind::network;
+  WettingParams network;
+};
+
+template <class V>
+void describe(V& v, WettingSpec& p) {
+  if constexpr (requires { v.short_form(""); }) v.short_form("kind");
+  v.choice("kind", p.kind, {{"network", WettingKind::network}}, "network: yarn segments and pores");
+  v.group("network", p.network, "models and numbers of the yarn and pore network");
+  if constexpr (requires { v.unavailable("", ""); })
+    v.unavailable("cells", "the cell model is not available in this version; write `wetting: network`");
+}
+
+struct TextileSpec {
+  std::string name = "textile";
+  Vec3 centre{};                       // m, of the mid-plane
+  Vec3 weft_direction{1, 0, 0};        // any length
+  Vec3 warp_direction{0, 1, 0};        // any length, square to the weft; the face is weft x warp
+  FabricSpec fabric;
+  std::optional<Real> contact_angle;   // rad, advancing, in place of every fibre's
+  std::optional<Real> receding_angle;  // rad
+  SheetSpec sheet;
+  WettingSpec wetting;
+};
+
+template <class V>
+void describe(V& v, TextileSpec& p) {
+  v.value("name", p.name, {.help = "name of its files and of its part of the report"});
+  v.value("centre", p.centre, {.unit = "m", .shown = "mm", .help = "centre of its mid-plane"});
+  v.value("weft_direction", p.weft_direction, {.min = -1e6, .max = 1e6, .help = "along the weft yarns; any length"});
+  v.value("warp_direction", p.warp_direction,
+          {.min = -1e6, .max = 1e6, .help = "along the warp yarns, square to the weft; the face is weft x warp"});
+  describe(v, p.fabric);
+  v.value("contact_angle", p.contact_angle,
+          {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
+           .help = "advancing contact angle of the liquid on every fibre; default: each fibre's own, which is water's"});
+  v.value("receding_angle", p.receding_angle,
+          {.unit = "rad", .shown = "deg", .min = 0, .max = pi, .help = "receding contact angle on every fibre"});
+  v.group("sheet", p.sheet, "how the cloth is held");
+  v.group("wetting", p.wetting, "how it takes liquid up");
+}
+
+struct SolidSpec {
+  std::string name = "solid";
+  ShapeSpec shape;
+  Real contact_angle = pi / 2;         // rad
+  std::optional<Real> receding_angle;  // rad
+  Real friction = 1;
+  Vec3 colour{0.55, 0.55, 0.58};
+};
+
+template <class V>
+void describe(V& v, SolidSpec& p) {
+  v.value("name", p.name, {.help = "name in the report"});
+  v.group("shape", p.shape, "form and place");
+  v.value("contact_angle", p.contact_angle,
+          {.unit = "rad", .shown = "deg", .min = 0, .max = pi, .help = "of the liquid on it"});
+  v.value("receding_angle", p.receding_angle,
+          {.unit = "rad", .shown = "deg", .min = 0, .max = pi, .help = "default: no hysteresis"});
+  v.value("friction", p.friction, {.min = 0, .max = 1, .help = "0: liquid slips along it; 1: it sticks (no slip)"});
+  v.value("colour", p.colour, {.min = 0, .max = 1, .help = "linear red, green, blue"});
+}
+
+struct DomainSpec {
+  std::optional<Vec3> lower, upper;  // m
+};
+
+template <class V>
+void describe(V& v, DomainSpec& p) {
+  v.value("lower", p.lower, {.unit = "m", .shown = "mm", .help = "lower corner; default from what is in the scene"});
+  v.value("upper", p.upper, {.unit = "m", .shown = "mm", .help = "upper corner; default from what is in the scene"});
+}
+
+struct OutputSpec {
+  std::optional<Real> every;        // s
+  std::optional<Real> checkpoint_every;  // s, of wall time
+  bool pictures = true, particles = true, textiles = true;
+};
+
+template <class V>
+void describe(V& v, OutputSpec& p) {
+  v.value("every", p.every,
+          {.unit = "s", .min = 0, .above_min = true, .help = "simulated time between outputs; default: duration / 50"});
+  v.value("checkpoint_every", p.checkpoint_every,
+          {.unit = "s", .min = 1, .help = "wall-clock time between checkpoints; default: 10 min"});
+  v.value("pictures", p.pictures, {.help = "a picture at every output, and the film"});
+  v.value("particles", p.particles, {.help = "liquid_*.vtp files"});
+  v.value("textiles", p.textiles, {.help = "textile_*.vtp files"});
+}
+
+// Guard rails: a scene that would need more is refused before it runs, or stopped with its results kept.
+struct LimitsSpec {
+  Real max_particles = 2e7;
+  std::optional<Real> max_memory;  // bytes
+  Real max_disk = 50e9;            // bytes
+  std::optional<Real> max_steps;
+};
+
+template <class V>
+void describe(V& v, LimitsSpec& p) {
+  v.value("max_particles", p.max_particles, {.min = 1, .max = 4e9, .help = "most particles of liquid"});
+  v.value("max_memory", p.max_memory,
+          {.unit = "byte", .shown = "GB", .min = 1e6, .help = "most memory; default: 80 % of the machine's"});
+  v.value("max_disk", p.max_disk, {.unit = "byte", .shown = "GB", .min = 1e6, .help = "most room of the run folder"});
+  v.value("max_steps", p.max_steps, {.min = 1, .help = "stop after so many steps; default: no limit"});
+}
+
+struct Scene {
+  int version = 1;
+  std::string title;
+  Real duration = 1;  // s
+  std::uint64_t seed = 1;
+  Vec3 gravity{0, 0, -9.81};  // m/s2
+  AirSpec air;
+  DomainSpec domain;
+  LiquidSpec liquid;
+  std::vector<TextileSpec> textiles;
+  std::vector<SolidSpec> solids;
+  OutputSpec output;
+  PictureOptions picture;
+  MeasureParams measures;
+  LimitsSpec limits;
+
+  // Not described: where each key stands, for problems found later. Resolved scenes written by us have none.
+  std::map<std::string, Place> places;
+};
+
+template <class V>
+void describe(V& v, Scene& p) {
+  v.value("version", p.version, {.min = 1, .max = 1, .required = true, .help = "of the scene language: 1"});
+  v.value("title", p.title, {.help = "shown on pictures and in the report"});
+  v.value("duration", p.duration,
+          {.unit = "s", .min = 0, .max = 1e9, .above_min = true, .required = true, .help = "simulated time"});
+  v.value("seed", p.seed, {.help = "of all random numbers"});
+  v.value("gravity", p.gravity, {.unit = "m/s2", .min = -1000, .max = 1000, .help = "z is up"});
+  v.group("air", p.air, "the air around");
+  v.group("domain", p.domain, "box outside which liquid is taken out and counted as left");
+  v.group("liquid", p.liquid, "the liquid and where it comes from");
+  v.list("textiles", p.textiles, "woven cloths");
+  v.list("solids", p.solids, "fixed solids");
+  v.group("output", p.output, "what is written, and how often");
+  v.group("picture", p.picture, "how pictures look");
+  v.group("measures", p.measures, "what counts as wet");
+  v.group("limits", p.limits, "guard rails of time, memory and disk");
+}
+
+// The time between outputs.
+Real output_interval(const Scene& scene);
+
+// Reads a scene file with its bases, applies `overrides` ("path=value", as --set), and checks each key. Throws one
+// InputError with every problem of the file.
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+Scene read_scene_text(const std::string& text, const std::string& file_name,
+                      const std::vector<std::string>& overrides = {});
+
+// The scene with every value, runnable again: reads back to the same bits.
+std::string write_scene(const Scene& scene);
+
+// A problem at the place where `key` (or the nearest enclosing key) was written.
+Problem scene_problem(const Scene& scene, const std::string& key, const std::string& message);
+
+}  // namespace imbibe
