@@ -17,7 +17,7 @@ struct Problem {
   std::string file{};
   int line = 0;
   int column = 0;
-  std::string key{};    // dotted path in the file, e.g. textiles[0].warp.diameter; may be empty
+  std::string key{};      // dotted path in the file, e.g. textiles[0].warp.diameter; may be empty
   std::string message{};  // what is wrong and what would be right
 
   // `file:line:column: error: key: message`
