@@ -28,7 +28,8 @@ std::string scaled_text(Real value, const std::string& unit, int digits) {
     Real scale;
     const char* text;
   };
-  static constexpr std::array<Prefix, 6> lengths{{{1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}, {1e-12, "p"}}};
+  static constexpr std::array<Prefix, 6> lengths{
+      {{1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}, {1e-12, "p"}}};
   static constexpr std::array<Prefix, 4> times{{{1, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}}};  // nobody says ks
   static constexpr std::array<Prefix, 5> masses{{{1, "k"}, {1e-3, ""}, {1e-6, "m"}, {1e-9, "µ"}, {1e-12, "n"}}};
   static constexpr std::array<Prefix, 3> areas{{{1, ""}, {1e-4, "c"}, {1e-6, "m"}}};

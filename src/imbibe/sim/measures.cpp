@@ -1,0 +1,81 @@
+#include "imbibe/sim/measures.h"
+
+#include <algorithm>
+
+#include "imbibe/core/error.h"
+
+namespace imbibe {
+
+std::vector<Real> node_saturations(const Textile& textile, const Air& air) {
+  const WettingModel& model = *textile.model;
+  const Contents& contents = textile.contents;
+  const Contents in_air = conditioned_contents(model, air);
+  std::vector<Real> result(model.nodes());
+  for (std::size_t node = 0; node < model.nodes(); ++node) {
+    if (node >= model.segments || model.yarns[model.segment_type[node]].wets) {
+      result[node] = saturation(model, contents, node);
+      continue;
+    }
+    const Real regain_in_air = node_regain(model, in_air, node);
+    const Real room = model.yarns[model.segment_type[node]].swelling_regain - regain_in_air;
+    const Real above = node_regain(model, contents, node) - regain_in_air;
+    result[node] = room > 0 ? std::max(0.0, above / room) : 0;
+  }
+  return result;
+}
+
+namespace {
+
+// The interval that holds all added numbers; 0 long when there is none.
+struct Range {
+  Real lower = unlimited, upper = -unlimited;
+  void include(Real x) {
+    lower = std::min(lower, x);
+    upper = std::max(upper, x);
+  }
+  Real length() const { return upper > lower ? upper - lower : 0; }
+};
+
+}  // namespace
+
+TextileMeasures measure(const Textile& textile, const Air& air, const MeasureParams& params) {
+  const WettingModel& model = *textile.model;
+  const YarnNetwork& network = textile.fabric->network;
+  IMBIBE_ASSERT(model.segments == network.segments() && model.pores == network.pores());
+  const std::vector<Real> saturations = node_saturations(textile, air);
+
+  TextileMeasures m;
+  Range along_warp, along_weft;
+  std::size_t wet_segments = 0;
+  Real yarn_sum = 0, pore_sum = 0, pore_volume = 0;
+  for (std::size_t node = 0; node < model.nodes(); ++node) {
+    const Real s = saturations[node];
+    m.max_saturation = std::max(m.max_saturation, s);
+    if (node < model.segments) {
+      m.yarn_volume += model.yarn_volume[node];
+      yarn_sum += s * model.yarn_volume[node];
+      m.max_regain = std::max(m.max_regain, node_regain(model, textile.contents, node));
+    } else {
+      pore_volume += model.volume[node];
+      pore_sum += s * model.volume[node];
+    }
+    if (!(s > params.wet_saturation)) continue;
+    along_warp.include(network.node_centre(node).y);
+    along_weft.include(network.node_centre(node).x);
+    if (node < model.segments) {
+      ++wet_segments;
+    } else {
+      m.wet_pore_area += network.pore_area[node - model.segments];
+    }
+  }
+  if (model.segments > 0) {
+    m.wet_area = network.size_x * network.size_y * static_cast<Real>(wet_segments) / static_cast<Real>(model.segments);
+  }
+  if (m.yarn_volume > 0) m.mean_saturation = yarn_sum / m.yarn_volume;
+  if (pore_volume > 0) m.pore_saturation = pore_sum / pore_volume;
+  m.extent_warp = along_warp.length();
+  m.extent_weft = along_weft.length();
+  return m;
+}
+
+}  // namespace imbibe
