@@ -56,8 +56,8 @@ struct Liquid {
   Real mass() const { return particle_mass * static_cast<Real>(particles.size()); }
 };
 
-// Appends a particle with a new id, at rest density and without warm start.
-void add_particle(Liquid& liquid, const Vec3& position, const Vec3& velocity);
+// Appends a particle with a new id, at rest density and without warm start. Returns the id.
+Index add_particle(Liquid& liquid, const Vec3& position, const Vec3& velocity);
 
 // Removes the particles with dead[i] != 0; the others keep their order. Returns how many were removed.
 std::size_t remove_particles(Particles& particles, std::span<const std::uint8_t> dead);

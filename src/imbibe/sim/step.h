@@ -1,6 +1,12 @@
-// One step of the world, as a short list of named stages in physical order.
+// One step of the world, as a short list of named stages in physical order:
+//   emit -> liquid -> contact -> exchange and wetting -> leave -> ledger
+// Two clocks: the free liquid makes SPH steps (1e-5 - 1e-3 s); the textiles make steps of their own interval, each after
+// several SPH steps, or alone while no free liquid moves (resting on the face, or none left). Resting liquid still
+// feeds the textile: the network takes from its footprint, and when 2 % of it is gone, or the face under it has become
+// more wettable, it moves again.
 #pragma once
 
+#include "imbibe/coupling/footprint.h"
 #include "imbibe/sim/world.h"
 
 namespace imbibe {
@@ -9,7 +15,7 @@ struct StepOptions {
   Real until = 0;              // s, do not step past this time
   Real max_step = 1e30;        // s
   Real min_step = 1e-9;        // s, a smaller one is a NumericalError
-  bool network_alone = true;   // let the network take long steps once no free liquid moves
+  bool rest_allowed = true;    // liquid at rest makes no SPH steps
 };
 
 // What a step did; observers print it, tests check it.
@@ -17,14 +23,27 @@ struct StepReport {
   Real step_s = 0;
   const char* step_bound = "";       // what held the step: "convective", "viscous", "capillary", "wetting", "until", ...
   bool liquid_moved = false;         // an SPH step was made (false: the network ran alone)
+  bool wetting_ran = false;
   Real density_error = 0;            // mean relative density error after the pressure solve
   Real peak_density_error = 0;       // largest of one particle
   int pressure_iterations = 0, divergence_iterations = 0;
   int wetting_iterations = 0;        // Newton iterations of all textiles
-  std::size_t absorbed = 0, released = 0, bounced = 0;  // particles
+  std::size_t emitted = 0, absorbed = 0, released = 0, left = 0;  // particles
   bool converged = true;
+  double liquid_wall_s = 0, wetting_wall_s = 0;  // wall-clock seconds spent
 };
 
-StepReport step(World& world, const StepOptions& options);
+// Work space kept between steps so that nothing is allocated; not state: results do not depend on it.
+struct StepScratch {
+  LiquidScratch liquid;
+  Footprint footprint;
+  std::vector<Shape> sheets;
+  std::vector<Wall> walls;
+  std::vector<std::vector<float>> saturation;  // per textile and node, for the face's contact angle
+  std::vector<Real> taken_kg;
+  std::vector<std::uint8_t> dead;
+};
+
+StepReport step(World& world, const StepOptions& options, StepScratch& scratch);
 
 }  // namespace imbibe

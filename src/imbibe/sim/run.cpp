@@ -1,0 +1,37 @@
+#include "imbibe/sim/run.h"
+
+#include <fmt/format.h>
+
+#include "imbibe/core/error.h"
+
+namespace imbibe {
+
+// The first multiple of `every` after `time`, or `until` when that comes first. A multiple within a billionth of
+// `time` counts as reached, since sums of steps are rounded.
+static Real next_output(Real time, Real every, Real until) {
+  if (every <= 0) return until;
+  const Real next = (std::floor(time / every * (1 + 1e-9) + 1e-9) + 1) * every;
+  return next < until * (1 - 1e-9) ? next : until;
+}
+
+RunEnd run(World& world, const RunPlan& plan, const RunHooks& hooks) {
+  StepScratch scratch;
+  StepReport report;
+  if (hooks.at_output) hooks.at_output(world, report);
+  StepOptions options = plan.step;
+  const std::uint64_t first_step = world.step;
+  while (world.time < plan.until) {
+    options.until = next_output(world.time, plan.every, plan.until);
+    report = step(world, options, scratch);
+    const bool reached = world.time >= options.until;
+    if (hooks.after_step) hooks.after_step(world, report);
+    if (reached && hooks.at_output) hooks.at_output(world, report);
+    if (hooks.stop_requested && hooks.stop_requested()) return RunEnd::stopped;
+    if (plan.max_steps > 0 && world.step - first_step >= plan.max_steps)
+      throw InputError(fmt::format("stopped after {} steps at t = {:.6g} s: the limit limits.max_steps is reached",
+                                   plan.max_steps, world.time));
+  }
+  return RunEnd::finished;
+}
+
+}  // namespace imbibe

@@ -1,0 +1,238 @@
+#include "imbibe/sim/step.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "imbibe/core/error.h"
+#include "imbibe/core/parallel.h"
+#include "imbibe/coupling/absorption.h"
+#include "imbibe/coupling/release.h"
+#include "imbibe/coupling/wet_wall.h"
+
+namespace imbibe {
+namespace {
+
+// The network follows moving liquid at least this often: pores fill in some 0.3 ms at first, later uptake is slow
+// against it (about 6 uL/s for cotton), so 2 ms moves less than a particle.
+constexpr Real longest_interval_with_moving_liquid = 2e-3;   // s
+constexpr Real longest_interval_with_resting_liquid = 5e-2;  // s
+constexpr Real share_taken_before_moving = 0.02;             // of the particles that came to rest
+constexpr Real force_averaging_time = 2e-3;                  // s, about ten SPH steps and more
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+Real next_drop(const World& world) {
+  Real next = std::numeric_limits<Real>::infinity();
+  for (const Source& source : world.sources) next = std::min(next, next_emission(source));
+  return next;
+}
+
+void emit_sources(World& world, StepReport& report) {
+  for (Source& source : world.sources) {
+    // Only what is due now: later drops of the step have their own.
+    const EmitReport emitted = emit(source, world.liquid, world.time, std::nextafter(world.time, 1e300));
+    world.ledger.supplied_kg += emitted.kg;
+    report.emitted += emitted.particles;
+  }
+  if (report.emitted > 0) world.pace.resting = false, world.pace.calm_since = -1;
+}
+
+void build_walls(const World& world, StepScratch& scratch) {
+  scratch.walls.clear();
+  for (const SolidBody& solid : world.solids) {
+    Wall wall;
+    wall.shape = &solid.shape;
+    wall.material = solid.material;
+    scratch.walls.push_back(std::move(wall));
+  }
+  scratch.sheets.clear();
+  for (const Textile& textile : world.textiles)
+    scratch.sheets.push_back(sheet_shape(textile.fabric->network, textile.placement));
+  if (scratch.saturation.size() != world.textiles.size()) scratch.saturation.assign(world.textiles.size(), {});
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    const Textile& textile = world.textiles[t];
+    std::vector<float>& s = scratch.saturation[t];
+    if (s.size() != textile.fabric->network.nodes()) {  // new scratch; kept current by exchange()
+      s.resize(textile.fabric->network.nodes());
+      for (std::size_t k = 0; k < s.size(); ++k)
+        s[k] = static_cast<float>(saturation(*textile.model, textile.contents, k));
+    }
+    scratch.walls.push_back(
+        wet_wall(scratch.sheets[t], textile.fabric->network, textile.placement, *textile.faces, s));
+  }
+}
+
+// The sheets are held: what the liquid gives them is booked, and its force averaged for the uptake law.
+void book_impulses(World& world, const std::vector<Vec3>& impulses, Real dt) {
+  const Real blend = std::min(1.0, dt / force_averaging_time);
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    Textile& textile = world.textiles[t];
+    const Vec3& impulse = impulses[world.solids.size() + t];
+    textile.exchange.impulse += impulse;
+    const Real force = -dot(impulse, textile.placement.n) / dt;
+    textile.exchange.normal_force += blend * (force - textile.exchange.normal_force);
+  }
+}
+
+void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& report) {
+  const auto start = Clock::now();
+  build_walls(world, scratch);
+  const LiquidStepReport liquid =
+      step_liquid(world.liquid, world.liquid_params, scratch.walls, world.gravity, max_step, scratch.liquid);
+  book_impulses(world, liquid.wall_impulse, liquid.step_s);
+  report.liquid_moved = true;
+  report.step_s = liquid.step_s;
+  report.step_bound = liquid.bound;
+  report.density_error = liquid.density_error;
+  report.peak_density_error = liquid.peak_density_error;
+  report.pressure_iterations = liquid.pressure_iterations;
+  report.divergence_iterations = liquid.divergence_iterations;
+  report.converged = liquid.converged;
+  report.liquid_wall_s = seconds_since(start);
+}
+
+// Textile step of dt: supply by the liquid on the faces, the network, then whole particles die or are born.
+void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, StepReport& report, Real& next_interval) {
+  Textile& textile = world.textiles[index];
+  const YarnNetwork& network = textile.fabric->network;
+  Footprint& footprint = scratch.footprint;
+  find_footprint(world.liquid, network, textile.placement, *textile.faces, textile.exchange, footprint);
+  scratch.taken_kg.assign(footprint.supplies.size(), 0);
+  const Vec3 gravity{dot(world.gravity, textile.placement.u), dot(world.gravity, textile.placement.v),
+                     dot(world.gravity, textile.placement.n)};
+  const WettingReport wetting = step_wetting(*textile.model, textile.contents, footprint.supplies, scratch.taken_kg,
+                                             world.air, gravity, dt);
+  report.wetting_iterations += wetting.newton_iterations;
+  if (!wetting.converged)
+    throw NumericalError(world.time, world.step, "wetting",
+                         fmt::format("textile {}: the network came {:.3g} s of {:.3g} s far", textile.name,
+                                     wetting.advanced_s, dt));
+  world.ledger.evaporated_kg += wetting.evaporated_kg;
+  next_interval = std::min(next_interval, wetting.suggested_step);
+
+  book_taken(footprint, scratch.taken_kg, textile.exchange);
+  scratch.dead.assign(world.liquid.particles.size(), 0);
+  report.absorbed += absorb_particles(world.liquid, footprint, textile.exchange, scratch.dead).particles;
+  remove_particles(world.liquid.particles, scratch.dead);
+  for (const auto& [node, kg] : wetting.released) textile.exchange.waiting_kg[node] += kg;
+  const ReleaseReport released = release_particles(network, textile.placement, *textile.faces, {}, world.gravity,
+                                                   textile.exchange, world.liquid);
+  report.released += released.particles;
+  if (released.particles > 0) world.pace.resting = false;
+  if (index < scratch.saturation.size())
+    for (std::size_t k = 0; k < scratch.saturation[index].size(); ++k)
+      scratch.saturation[index][k] = static_cast<float>(saturation(*textile.model, textile.contents, k));
+}
+
+void exchange_all(World& world, Real dt, StepScratch& scratch, StepReport& report) {
+  const auto start = Clock::now();
+  Real next = std::numeric_limits<Real>::infinity();
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) exchange(world, t, dt, scratch, report, next);
+  world.pace.since_wetting = 0;
+  world.pace.wetting_interval = next;
+  report.wetting_ran = true;
+  report.wetting_wall_s += seconds_since(start);
+}
+
+// Particles outside the domain have left; the ledger keeps their mass.
+void leave(World& world, StepScratch& scratch, StepReport& report) {
+  if (world.domain.empty()) return;
+  const std::size_t n = world.liquid.particles.size();
+  scratch.dead.assign(n, 0);
+  bool any = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Float4& x = world.liquid.particles.position[i];
+    if (!world.domain.contains({x.x, x.y, x.z})) scratch.dead[i] = 1, any = true;
+  }
+  if (!any) return;
+  report.left = remove_particles(world.liquid.particles, scratch.dead);
+  world.ledger.left_kg += world.liquid.particle_mass * static_cast<Real>(report.left);
+}
+
+// Slow enough to count as resting: rms speed below 3 % of the capillary velocity sqrt(gamma / (rho R)) of a drop of
+// all the liquid, for a quarter of its capillary time sqrt(rho R^3 / gamma). Liquid in the air is never at rest:
+// gravity alone exceeds that speed within a millisecond.
+void judge_rest(World& world, const StepOptions& options) {
+  Pace& pace = world.pace;
+  const Particles& p = world.liquid.particles;
+  if (!options.rest_allowed || p.size() == 0) return;
+  const Real square = parallel_sum(p.size(), [&](std::size_t begin, std::size_t end) {
+    Real s = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Float4& v = p.velocity[i];
+      s += Real(v.x) * v.x + Real(v.y) * v.y + Real(v.z) * v.z;
+    }
+    return s;
+  });
+  const LiquidKind& kind = world.liquid.kind;
+  const Real radius = std::cbrt(3 * world.liquid.mass() / (4 * pi * kind.density));
+  const Real slow = 0.03 * std::sqrt(kind.surface_tension / (kind.density * radius));
+  if (square > slow * slow * static_cast<Real>(p.size())) {
+    pace.calm_since = -1;
+    return;
+  }
+  if (pace.calm_since < 0) pace.calm_since = world.time;
+  if (world.time - pace.calm_since < 0.25 * std::sqrt(kind.density * radius * radius * radius / kind.surface_tension))
+    return;
+  pace.resting = true;
+  pace.particles_at_rest = p.size();
+}
+
+void wake_when_changed(World& world) {
+  Pace& pace = world.pace;
+  const Real gone = static_cast<Real>(pace.particles_at_rest) - static_cast<Real>(world.liquid.particles.size());
+  if (gone <= share_taken_before_moving * static_cast<Real>(pace.particles_at_rest) && gone >= 0) return;
+  pace.resting = false;
+  pace.calm_since = -1;
+}
+
+// The step of the textiles that the liquid above allows.
+Real textile_interval(const World& world, bool moving) {
+  const Real longest = moving ? longest_interval_with_moving_liquid
+                     : world.liquid.particles.size() > 0 ? longest_interval_with_resting_liquid
+                                                         : std::numeric_limits<Real>::infinity();
+  return std::min(world.pace.wetting_interval, longest);
+}
+
+}  // namespace
+
+StepReport step(World& world, const StepOptions& options, StepScratch& scratch) {
+  StepReport report;
+  Pace& pace = world.pace;
+  const Real remaining = options.until - world.time;
+  IMBIBE_ASSERT(remaining > 0);
+  const Real longest = std::min(remaining, options.max_step);
+  if (next_drop(world) <= world.time) emit_sources(world, report);
+  // A drop is born at its own time: no step passes over it. One that waits for its place tries again at every step.
+  const Real drop_in = next_drop(world) - world.time;
+  const Real allowed = drop_in > 0 ? std::min(longest, drop_in) : longest;
+
+  const bool moving = world.liquid.particles.size() > 0 && !pace.resting;
+  if (moving) {
+    Real max_step = allowed;
+    const Real interval = textile_interval(world, true);
+    if (!world.textiles.empty()) max_step = std::min(max_step, std::max(interval - pace.since_wetting, 1e-6));
+    move_liquid(world, max_step, scratch, report);
+    pace.since_wetting += report.step_s;
+    if (!world.textiles.empty() && pace.since_wetting >= interval * (1 - 1e-9))
+      exchange_all(world, pace.since_wetting, scratch, report);
+    leave(world, scratch, report);
+    judge_rest(world, options);
+  } else {
+    if (pace.since_wetting > 0 && !world.textiles.empty()) exchange_all(world, pace.since_wetting, scratch, report);
+    report.step_s = world.textiles.empty() ? allowed : std::min(allowed, textile_interval(world, false));
+    report.step_bound = report.step_s < allowed ? "wetting" : allowed < longest ? "drop" : "until";
+    if (!world.textiles.empty()) exchange_all(world, report.step_s, scratch, report);
+    if (pace.resting) wake_when_changed(world);
+  }
+  // Landing on `until` exactly keeps output times free of summed rounding.
+  world.time = report.step_s >= remaining * (1 - 1e-12) ? options.until : world.time + report.step_s;
+  ++world.step;
+  if (!(report.step_s >= options.min_step) && world.time < options.until)
+    throw NumericalError(world.time, world.step, "step", fmt::format("the step fell to {:.3g} s", report.step_s));
+  return report;
+}
+
+}  // namespace imbibe

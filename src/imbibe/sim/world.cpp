@@ -1,0 +1,36 @@
+#include "imbibe/sim/world.h"
+
+#include <numeric>
+
+namespace imbibe {
+
+Real MassBalance::error() const {
+  const Real before = initial + supplied;
+  const Real now = free + sorbed + yarn + pore + cell + evaporated + left;
+  return before > 0 ? std::abs(now - before) / before : std::abs(now);
+}
+
+static Real sum(const std::vector<Real>& values, std::size_t begin, std::size_t end) {
+  return std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                         values.begin() + static_cast<std::ptrdiff_t>(end), Real{0});
+}
+
+MassBalance mass_balance(const World& world) {
+  MassBalance b;
+  b.free = world.liquid.mass();
+  for (const Textile& textile : world.textiles) {
+    const std::size_t segments = textile.fabric->network.segments(), nodes = textile.fabric->network.nodes();
+    b.sorbed += sum(textile.contents.sorbed_kg, 0, textile.contents.sorbed_kg.size());
+    b.yarn += sum(textile.contents.liquid_kg, 0, segments);
+    b.pore += sum(textile.contents.liquid_kg, segments, nodes);
+    // Particles that are still there but no longer own their mass, and mass that is not a particle yet.
+    b.free += sum(textile.exchange.waiting_kg, 0, nodes) - sum(textile.exchange.owed_kg, 0, nodes);
+  }
+  b.evaporated = world.ledger.evaporated_kg;
+  b.left = world.ledger.left_kg;
+  b.supplied = world.ledger.supplied_kg;
+  b.initial = world.ledger.initial_kg;
+  return b;
+}
+
+}  // namespace imbibe
