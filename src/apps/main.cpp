@@ -11,13 +11,12 @@
 namespace {
 
 // Data folders: IMBIBE_DATA_DIR when set, else share/imbibe beside an installed bin/, else the current folder.
-std::vector<std::string> data_folders(const char* program) {
+std::vector<std::string> data_folders() {
   std::vector<std::string> folders;
   if (const char* given = std::getenv("IMBIBE_DATA_DIR")) folders.emplace_back(given);
   std::error_code ignored;
   const auto self = std::filesystem::canonical("/proc/self/exe", ignored);
   if (!ignored) folders.push_back((self.parent_path().parent_path() / "share" / "imbibe").string());
-  (void)program;
   folders.emplace_back(".");
   return folders;
 }
@@ -36,7 +35,7 @@ int main(int count, char** words) {
   app.require_subcommand(1);
   app.set_version_flag("--version", IMBIBE_VERSION);
   CommandContext context;
-  context.data_folders = data_folders(words[0]);
+  context.data_folders = data_folders();
   context.command_line = command_line(count, words);
   add_run_command(app, context);
   add_check_command(app, context);

@@ -14,7 +14,7 @@ bool is_free(const Particles& particles, const Vec3& place, Real clearance) {
 }
 
 // Waiting mass of the nodes within reach of `centre`.
-Real waiting_near(const YarnNetwork& network, const FaceMap& map, const Vec3& centre, const ExchangeState& exchange) {
+Real waiting_near(const FaceMap& map, const Vec3& centre, const ExchangeState& exchange) {
   Real sum = 0;
   map.near(centre.x, centre.y, [&](Index k) { sum += exchange.waiting_kg[k]; });
   return sum;
@@ -44,7 +44,7 @@ ReleaseReport release_particles(const YarnNetwork& network, const Placement& pla
   const Real side = dot(gravity, placement.n) > 0 ? 1 : -1;  // the lower face
   for (const Index k : full) {
     const Vec3& centre = network.node_centre(k);
-    const Real present = waiting_near(network, map, centre, exchange);
+    const Real present = waiting_near(map, centre, exchange);
     if (present < mass) continue;
     const Vec3 place = placement.to_world({centre.x, centre.y, side * (0.5 * network.thickness + 0.5 * dx)});
     if (!is_free(liquid.particles, place, 0.8 * dx)) continue;
