@@ -29,7 +29,8 @@ struct WeaveDraft {
   friend bool operator==(const WeaveDraft&, const WeaveDraft&) = default;
 };
 
-inline constexpr int largest_weave_repeat = 4096;  // picks or ends
+inline constexpr int largest_weave_repeat = 16384;       // picks or ends
+inline constexpr std::size_t largest_weave = 1u << 26;   // crossings of a repeat
 
 enum class TwillDirection { right, left };
 
@@ -41,7 +42,7 @@ WeaveDraft satin_weave(int ends, int step);
 WeaveDraft sateen_weave(int ends, int step);
 // Plain weave of groups of `ends` ends and `picks` picks.
 WeaveDraft basket_weave(int ends, int picks);
-// Rows of '0' and '1' (also '.', '-' or ' ' for 0 is refused: only 0 and 1); first row = first pick.
+// Rows of 0 and 1; first row = first pick.
 WeaveDraft weave_from_rows(const std::vector<std::string>& rows);
 
 // Any of the forms above; throws InputError that says what is wrong and lists the forms.
