@@ -1,9 +1,10 @@
 // Checkpoints: the state of a World in one HDF5 file, so that a run goes on after a stop as if it had not stopped.
 //
-// The file: a 512-byte user block with magic, format version, length and a 64-bit checksum of everything after it (h5dump and h5py
-// skip it), then an HDF5 file with one data set per field of sim/state_fields.h, by the same names. What the scene
-// builds (fabrics, models, solids, parameters) is not stored: the caller builds the World from scene.yaml, then reads.
-// Written beside its place and renamed. Tested in tests/sim/checkpoint_test.cpp.
+// The file: a 512-byte user block (which h5dump and h5py skip) with format version, length and a 64-bit checksum of all
+// that follows, then an HDF5 file with one data set per field of sim/state_fields.h, by the same names. The checksum is
+// verified before the HDF5 library sees a byte, so that a damaged file cannot lead it astray.
+// What the scene builds (fabrics, models, solids, parameters) is not stored: the caller builds the World from
+// scene.yaml, then reads. Written beside its place and renamed. Tested in tests/sim/checkpoint_test.cpp.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +20,8 @@ inline constexpr int checkpoint_version = 1;
 // Throws OutputError when the disk will not take it; an older checkpoint of that name then stays.
 void write_checkpoint(const std::filesystem::path& path, const World& world);
 
-// Replaces the state of `built`, which must be of the same scene: same textiles by name and size, same particle mass,
-// same sources. Throws InputError with every mismatch, or when the file is damaged; `built` is then unchanged.
+// Replaces the state of `built`, which must be of the same scene: as many textiles of the same size, as many sources,
+// the same particle mass. Throws InputError with every mismatch, or when the file is damaged; `built` is then unchanged.
 void read_checkpoint(const std::filesystem::path& path, World& built);
 
 // checkpoint_<step>.h5 in `folder`, oldest first.

@@ -2,10 +2,11 @@
 // it: a new field of the state is added here and nowhere else.
 //
 // A visitor has:
-//   void group(const std::string& name);          the fields that follow belong to this path, e.g. "textiles/swatch"
+//   void group(const std::string& name);          the fields that follow belong to this path, e.g. "textiles/0"
 //   template <class T> void value(const char* name, T& x);               scalars (arithmetic, enum, Vec3)
 //   template <class T> void array(const char* name, std::vector<T>& x);  arithmetic, enum, Vec3, Float4
-// The same function serves const worlds: the fields are then const.
+// The same function serves const worlds: the fields are then const. It visits as many textiles and sources as the world
+// has.
 //
 // Not state, and so not here: what the scene builds (fabric, model, placement, solids, liquid kind, parameters,
 // domain, and what a source is to emit).
@@ -56,8 +57,9 @@ void visit_state(Visitor& v, AnyWorld& world) {
     v.value("supplied_kg", world.sources[i].supplied_kg);
   }
 
-  for (auto& textile : world.textiles) {
-    v.group("textiles/" + textile.name);
+  for (std::size_t i = 0; i < world.textiles.size(); ++i) {
+    auto& textile = world.textiles[i];
+    v.group("textiles/" + std::to_string(i));
     v.array("sorbed_kg", textile.contents.sorbed_kg);
     v.array("liquid_kg", textile.contents.liquid_kg);
     v.array("shell_regain", textile.contents.shell_regain);
