@@ -31,10 +31,19 @@ struct Slice {
   const float* slope = nullptr;  // W'(r)/r of that pair, 0 in padding
 };
 
+// The lists of default_tile particles, and the work space to build them.
 struct NeighbourTile {
   std::vector<Index> index;
   std::vector<float> slope;
   std::array<std::uint32_t, default_tile / simd::lanes + 1> begin{};  // first slot of each slice
+
+  struct Candidates {
+    std::vector<float> x, y, z;
+    std::vector<Index> id;
+    std::vector<std::uint32_t> side;
+  } candidates;
+  std::array<std::vector<Index>, simd::lanes> lane_index;
+  std::array<std::vector<float>, simd::lanes> lane_square;
 };
 
 struct OccupiedCell {
@@ -50,10 +59,15 @@ struct Neighbours {
   std::vector<Index> order;           // order[i] = index before sorting of particle i
   // Coordinates apart, for the search.
   std::vector<float> x, y, z;
+  std::uint64_t row = 0, layer = 0;   // key distance of the next row (y) and layer (z) of cells
   // Work space of the sort.
   std::vector<std::uint64_t> key, key_swap;
   std::vector<Index> order_swap;
   std::vector<std::uint32_t> histogram;
+  std::vector<Float4> record_swap;
+  std::vector<float> scalar_swap;
+  std::vector<Index> id_swap;
+  std::vector<ParticleClass> kind_swap;
 
   Slice slice(std::size_t first) const {
     const NeighbourTile& tile = tiles[first / default_tile];

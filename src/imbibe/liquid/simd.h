@@ -39,6 +39,16 @@ inline Floats sqrt(Floats v) {  // exact; the compiler turns the loop into one i
   for (int l = 0; l < lanes; ++l) r[l] = std::sqrt(v[l]);
   return r;
 }
+// Bit l is set where lane l of a comparison is true.
+inline unsigned bits(Ints mask) {
+#ifdef __AVX__
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Floats>(mask)));
+#else
+  unsigned b = 0;
+  for (int l = 0; l < lanes; ++l) b |= mask[l] ? 1u << l : 0u;
+  return b;
+#endif
+}
 inline Floats dot(const Floats3& a, const Floats3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // Eight records of four floats.

@@ -18,7 +18,7 @@ namespace imbibe {
 enum class SourceForm { drop, box };
 
 struct Source {
-  std::string name;
+  std::string name{};
   SourceForm form = SourceForm::drop;
   Vec3 centre{};             // m
   Real volume = 0;           // m3 of each drop; of a box, 0 = its size

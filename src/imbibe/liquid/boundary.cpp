@@ -1,0 +1,352 @@
+#include "imbibe/liquid/boundary.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "imbibe/core/error.h"
+#include "imbibe/core/parallel.h"
+#include "imbibe/geometry/bounds.h"
+#include "imbibe/liquid/neighbours.h"
+
+namespace imbibe {
+
+namespace {
+
+Vec3 place(const Float4& p) { return {p.x, p.y, p.z}; }
+
+struct SolidSum {
+  Real lambda = 0;
+  Vec3 gradient{};
+};
+
+// The part of the kernel inside a convex solid that is an intersection of slabs: the product of the parts inside each
+// slab. Exact on faces, and on an edge's line by symmetry (1/4, 1/8); W is not a product, so not exact between.
+class SlabProduct {
+ public:
+  void add(const SolidIntegral& part, const Vec3& outward) {
+    gradient_ = gradient_ * part.lambda + outward * (lambda_ * part.slope);
+    lambda_ *= part.lambda;
+  }
+  SolidSum sum() const { return {lambda_, gradient_}; }
+
+ private:
+  Real lambda_ = 1;
+  Vec3 gradient_{};
+};
+
+Real sign(Real x) { return x < 0 ? -1.0 : 1.0; }
+
+SolidSum solid_sum(const Plane& s, const Vec3& p, Real h) {
+  SlabProduct product;
+  product.add(half_space_integral(dot(p - s.point, s.normal), h), s.normal);
+  return product.sum();
+}
+
+SolidSum solid_sum(const Box& s, const Vec3& p, Real h) {
+  const Vec3 from = p - s.centre;
+  SlabProduct product;
+  product.add(half_space_integral(std::abs(from.x) - 0.5 * s.size.x, h), {sign(from.x), 0, 0});
+  product.add(half_space_integral(std::abs(from.y) - 0.5 * s.size.y, h), {0, sign(from.y), 0});
+  product.add(half_space_integral(std::abs(from.z) - 0.5 * s.size.z, h), {0, 0, sign(from.z)});
+  return product.sum();
+}
+
+SolidSum solid_sum(const Sphere& s, const Vec3& p, Real h) {
+  const Vec3 from = p - s.centre;
+  SlabProduct product;
+  product.add(solid_integral(norm(from) - s.radius, 2 / s.radius, h), normalized(from));
+  return product.sum();
+}
+
+// A point in the coordinates of a body of revolution: height above the base, distance from the axis, and its direction.
+struct AxialPoint {
+  Real height, radius;
+  Vec3 outward;
+};
+
+AxialPoint axial(const Vec3& base, const Vec3& axis, const Vec3& p) {
+  const Vec3 from = p - base;
+  const Real height = dot(from, axis);
+  const Vec3 across = from - axis * height;
+  return {height, norm(across), normalized(across)};
+}
+
+SolidSum solid_sum(const Cylinder& s, const Vec3& p, Real h) {
+  const AxialPoint a = axial(s.base, s.axis, p);
+  const Real above = a.height - 0.5 * s.height;
+  SlabProduct product;
+  product.add(solid_integral(a.radius - s.radius, 1 / s.radius, h), a.outward);
+  product.add(half_space_integral(std::abs(above) - 0.5 * s.height, h), s.axis * sign(above));
+  return product.sum();
+}
+
+SolidSum solid_sum(const Cone& s, const Vec3& p, Real h) {
+  const AxialPoint a = axial(s.base, s.axis, p);
+  const Real slant = std::hypot(s.radius, s.height);
+  const Real radial = s.height / slant, axial_part = s.radius / slant;  // outward normal of the side
+  const Real distance = (a.radius - s.radius) * radial + a.height * axial_part;
+  // Curved like a circle of the foot point's distance from the axis; near the apex no more than a ball of radius H/2.
+  const Real foot = std::max(a.radius - distance * radial, 0.0);
+  const Real curvature = std::min(radial / std::max(foot, 1e-3 * h), 4 / h);
+  SlabProduct product;
+  product.add(solid_integral(distance, curvature, h), a.outward * radial + s.axis * axial_part);
+  product.add(half_space_integral(-a.height, h), -s.axis);
+  return product.sum();
+}
+
+SolidSum solid_sum(const MeshShape& s, const Vec3& p, Real h) {
+  const SurfaceSample nearest = nearest_surface(Shape(s), p);
+  SlabProduct product;
+  product.add(half_space_integral(nearest.distance, h), nearest.normal);
+  return product.sum();
+}
+
+// A thin box as a sheet: its thin axis, and half the thickness.
+struct Sheet {
+  int axis = 2;
+  Real centre[3], half[3];
+};
+
+Sheet sheet_of(const Box& b) {
+  Sheet s{2, {b.centre.x, b.centre.y, b.centre.z}, {0.5 * b.size.x, 0.5 * b.size.y, 0.5 * b.size.z}};
+  for (int a = 0; a < 2; ++a) {
+    if (s.half[a] < s.half[s.axis]) s.axis = a;
+  }
+  return s;
+}
+
+Vec3 unit(int axis, Real length) { return {axis == 0 ? length : 0, axis == 1 ? length : 0, axis == 2 ? length : 0}; }
+
+// Where a point lies relative to a sheet: how far over the face of its side, and whether over or under the sheet rather
+// than beside it.
+struct SheetPlace {
+  Real side = 1;      // +1 above the middle, -1 below
+  Real distance = 0;  // m from the face of that side
+  bool facing = false;
+};
+
+SheetPlace place_at(const Sheet& s, const Vec3& p) {
+  const Real x[3] = {p.x, p.y, p.z};
+  SheetPlace r;
+  r.facing = true;
+  for (int a = 0; a < 3; ++a) {
+    const Real from = x[a] - s.centre[a];
+    if (a == s.axis) {
+      r.side = sign(from);
+      r.distance = std::abs(from) - s.half[a];
+    } else {
+      r.facing = r.facing && std::abs(from) <= s.half[a];
+    }
+  }
+  return r;
+}
+
+// One wall made ready for many queries.
+struct PreparedWall {
+  const Wall* wall;
+  Index index;
+  Bounds reach;                // a particle outside sees nothing of it
+  bool everywhere;             // no bounds (a plane)
+  std::optional<Sheet> sheet;  // two-sided
+  int sheet_bit = 0;
+};
+
+std::vector<PreparedWall> prepared(std::span<const Wall> walls, Real support) {
+  std::vector<PreparedWall> result;
+  int sheets = 0;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    IMBIBE_ASSERT(walls[k].shape != nullptr);
+    const bool plane = std::holds_alternative<Plane>(*walls[k].shape);
+    PreparedWall w{&walls[k], static_cast<Index>(k), plane ? Bounds{} : bounds_of(*walls[k].shape), plane, {}, 0};
+    w.reach.grow(support);
+    const Box* box = std::get_if<Box>(walls[k].shape);
+    if (walls[k].two_sided && box != nullptr) {
+      IMBIBE_ASSERT(sheets < 16);
+      w.sheet = sheet_of(*box);
+      w.sheet_bit = sheets++;
+    }
+    result.push_back(w);
+  }
+  return result;
+}
+
+// A sheet seen by a particle: all the solid behind the face on the particle's side, ending at the sheet's edges.
+SolidSum sheet_sum(const Sheet& s, const SheetPlace& at, const Vec3& p, Real h) {
+  const Real x[3] = {p.x, p.y, p.z};
+  SlabProduct product;
+  for (int a = 0; a < 3; ++a) {
+    const Real from = x[a] - s.centre[a];
+    const Real distance = a == s.axis ? at.distance : std::abs(from) - s.half[a];
+    product.add(half_space_integral(distance, h), unit(a, a == s.axis ? at.side : sign(from)));
+  }
+  return product.sum();
+}
+
+bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample& out, std::uint32_t& side) {
+  if (!w.everywhere && !w.reach.contains(p)) return false;
+  SurfaceSample nearest;
+  SolidSum sum;
+  if (w.sheet) {
+    const SheetPlace at = place_at(*w.sheet, p);
+    if (at.facing && at.distance < support) side |= (at.side > 0 ? 1u : 1u << 16) << w.sheet_bit;
+    if (at.facing) {
+      nearest = {at.distance, unit(w.sheet->axis, at.side)};
+    } else {
+      nearest = nearest_surface(*w.wall->shape, p);
+    }
+    if (nearest.distance >= support) return false;
+    sum = sheet_sum(*w.sheet, at, p, support);
+  } else {
+    nearest = nearest_surface(*w.wall->shape, p);
+    if (nearest.distance >= support) return false;
+    sum = std::visit([&](const auto& s) { return solid_sum(s, p, support); }, *w.wall->shape);
+  }
+  out.distance = static_cast<float>(nearest.distance);
+  out.normal = Vec3f(nearest.normal);
+  out.lambda = static_cast<float>(sum.lambda);
+  out.gradient = Vec3f(sum.gradient);
+  const Wall& wall = *w.wall;
+  out.cos_contact_angle = wall.cos_contact_angle_at ? wall.cos_contact_angle_at(p)
+                                                    : static_cast<float>(std::cos(wall.material.contact_angle));
+  out.friction = static_cast<float>(wall.material.friction);
+  out.wall = w.index;
+  return true;
+}
+
+// The nearest walls first, at most walls_per_particle.
+struct NearestSamples {
+  std::array<WallSample, walls_per_particle> sample;
+  int count = 0;
+
+  void add(const WallSample& s) {
+    int k = count < walls_per_particle ? count++ : walls_per_particle;
+    for (; k > 0 && s.distance < sample[static_cast<std::size_t>(k - 1)].distance; --k) {
+      if (k < walls_per_particle) sample[static_cast<std::size_t>(k)] = sample[static_cast<std::size_t>(k - 1)];
+    }
+    if (k < walls_per_particle) sample[static_cast<std::size_t>(k)] = s;
+  }
+
+  // Weights each gradient by the liquid's part at the other walls; returns G and lambda together.
+  Float4 combine() {
+    Float4 all{0, 0, 0, 0};
+    float open = 1;
+    for (int k = 0; k < count; ++k) {
+      float others = 1;
+      for (int l = 0; l < count; ++l) {
+        if (l != k) others *= 1 - sample[static_cast<std::size_t>(l)].lambda;
+      }
+      WallSample& s = sample[static_cast<std::size_t>(k)];
+      open *= 1 - s.lambda;
+      s.gradient *= others;
+      all.x += s.gradient.x, all.y += s.gradient.y, all.z += s.gradient.z;
+    }
+    all.w = 1 - open;
+    return all;
+  }
+};
+
+}  // namespace
+
+void sample_walls(Boundary& boundary, std::span<const Float4> position, std::size_t count, std::span<const Wall> walls,
+                  const Kernel& kernel) {
+  static_assert(Boundary::default_tile_size == default_tile);
+  const std::vector<PreparedWall> ready = prepared(walls, kernel.support);
+  const bool sheets = std::any_of(ready.begin(), ready.end(), [](const PreparedWall& w) { return w.sheet.has_value(); });
+  boundary.tiles.resize((count + default_tile - 1) / default_tile);
+  boundary.wall.assign(padded_size(count), Float4{});
+  boundary.side.resize(sheets ? count : 0);
+  boundary.near_walls = parallel_sum(count, [&](std::size_t begin, std::size_t end) {
+    Boundary::Tile& tile = boundary.tiles[begin / default_tile];
+    tile.samples.clear();
+    tile.first.assign(1, 0);
+    std::size_t near = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      NearestSamples found;
+      std::uint32_t side = 0;
+      WallSample sample;
+      for (const PreparedWall& w : ready) {
+        if (sample_wall(w, place(position[i]), kernel.support, sample, side)) found.add(sample);
+      }
+      if (found.count > 0) boundary.wall[i] = found.combine(), ++near;
+      if (sheets) boundary.side[i] = side;
+      tile.samples.insert(tile.samples.end(), found.sample.begin(), found.sample.begin() + found.count);
+      tile.first.push_back(static_cast<std::uint16_t>(tile.samples.size()));
+    }
+    return near;
+  });
+}
+
+void add_wall_impulse(const Boundary& boundary, std::span<const float> coefficient, Real scale,
+                      std::vector<Vec3>& impulse) {
+  // Serial: only the particles near walls take part, and the order of the sum is fixed.
+  for (std::size_t t = 0; t < boundary.tiles.size(); ++t) {
+    const Boundary::Tile& tile = boundary.tiles[t];
+    for (std::size_t k = 0; k + 1 < tile.first.size() && !tile.samples.empty(); ++k) {
+      const Real c = scale * static_cast<Real>(coefficient[t * default_tile + k]);
+      for (std::size_t s = tile.first[k]; s < tile.first[k + 1]; ++s) {
+        impulse[tile.samples[s].wall] += c * Vec3(tile.samples[s].gradient);
+      }
+    }
+  }
+}
+
+namespace {
+
+// Where a particle that moved lies relative to a wall it was sampled on; for a sheet relative to the face it came from.
+SurfaceSample place_after(const Wall& wall, const Vec3& before, const Vec3& now) {
+  const Box* box = wall.two_sided ? std::get_if<Box>(wall.shape) : nullptr;
+  if (box == nullptr) return nearest_surface(*wall.shape, now);
+  const Sheet sheet = sheet_of(*box);
+  const SheetPlace was = place_at(sheet, before), is = place_at(sheet, now);
+  if (!is.facing) return {std::numeric_limits<Real>::infinity(), {}};
+  if (!was.facing || was.side == is.side) return {is.distance, unit(sheet.axis, is.side)};
+  return {-is.distance - 2 * sheet.half[sheet.axis], unit(sheet.axis, was.side)};  // through the sheet
+}
+
+Float4 record(const Vec3& v, float w) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), w};
+}
+
+}  // namespace
+
+std::size_t keep_outside(const Boundary& boundary, std::span<const Float4> before, std::span<Float4> position,
+                         std::span<Float4> velocity, std::size_t count, std::span<const Wall> walls, Real spacing,
+                         Real particle_mass, std::vector<Vec3>& impulse) {
+  const Real gap = 1e-3 * spacing;  // far above the rounding of a single-precision position
+  struct Part {
+    std::size_t put_back = 0;
+    std::vector<Vec3> impulse;  // empty while nothing was put back
+  };
+  std::vector<Part> parts((count + default_tile - 1) / default_tile);
+  parallel_tiles(count, [&](std::size_t begin, std::size_t end) {
+    Part& part = parts[begin / default_tile];
+    for (std::size_t i = begin; i < end; ++i) {
+      bool moved = false;
+      for (const WallSample& sample : boundary.samples(i)) {
+        const Vec3 was = place(before[i]), p = place(position[i]);
+        const Real distance = static_cast<Real>(sample.distance) - gap;
+        if (distance > 0 && squared_norm(p - was) < distance * distance) continue;  // cannot have reached it
+        const SurfaceSample now = place_after(walls[sample.wall], was, p);
+        if (now.distance >= 0) continue;
+        moved = true;
+        position[i] = record(p + now.normal * (gap - now.distance), position[i].w);
+        const Vec3 v = place(velocity[i]);
+        const Real into = dot(v, now.normal);
+        if (into >= 0) continue;
+        velocity[i] = record(v - now.normal * into, velocity[i].w);
+        if (part.impulse.empty()) part.impulse.resize(impulse.size());
+        part.impulse[sample.wall] += now.normal * (into * particle_mass);
+      }
+      part.put_back += moved ? 1 : 0;
+    }
+  });
+  std::size_t put_back = 0;
+  for (const Part& part : parts) {
+    put_back += part.put_back;
+    for (std::size_t k = 0; k < part.impulse.size(); ++k) impulse[k] += part.impulse[k];
+  }
+  return put_back;
+}
+
+}  // namespace imbibe

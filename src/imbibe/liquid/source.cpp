@@ -1,0 +1,127 @@
+#include "imbibe/liquid/source.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "imbibe/core/error.h"
+
+namespace imbibe {
+
+namespace {
+
+// New particles nearer than this to old ones, in spacings, would start with a pressure burst.
+constexpr Real free_distance = 0.8;
+
+Real volume_of(const Source& s) {
+  if (s.volume > 0 || s.form == SourceForm::drop) return s.volume;
+  return s.size.x * s.size.y * s.size.z;
+}
+
+std::size_t rounded_count(Real volume, Real particle_volume) {
+  return static_cast<std::size_t>(std::max(0.0, std::round(volume / particle_volume)));
+}
+
+// The `count` points of a cubic lattice nearest to the origin (at a cell's corner, so that all eight octants are equal).
+std::vector<Vec3> ball_lattice(std::size_t count, Real spacing) {
+  struct Point {
+    Real square;
+    Vec3 at;
+  };
+  const Real radius = std::cbrt(3.0 / (4 * pi) * static_cast<Real>(count));
+  const int reach = static_cast<int>(std::ceil(radius)) + 2;
+  std::vector<Point> points;
+  for (int z = -reach; z < reach; ++z) {
+    for (int y = -reach; y < reach; ++y) {
+      for (int x = -reach; x < reach; ++x) {
+        const Vec3 p{x + 0.5, y + 0.5, z + 0.5};
+        if (squared_norm(p) <= (radius + 2) * (radius + 2)) points.push_back({squared_norm(p), p});
+      }
+    }
+  }
+  // The outermost points are a choice among equals: spread them by a fixed mixing of the coordinates.
+  const auto mix = [](const Vec3& p) {
+    const Real m = p.x * 0.8191725 + p.y * 0.6710436 + p.z * 0.5497005;
+    return m - std::floor(m);
+  };
+  std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) {
+    return a.square != b.square ? a.square < b.square : mix(a.at) < mix(b.at);
+  });
+  IMBIBE_ASSERT(points.size() >= count);
+  std::vector<Vec3> result;
+  for (std::size_t k = 0; k < count; ++k) result.push_back(spacing * points[k].at);
+  return result;
+}
+
+// `count` points of a cubic lattice that fills the box from below, centred in x and y.
+std::vector<Vec3> box_lattice(std::size_t count, const Vec3& size, Real spacing) {
+  const auto fit = [&](Real length) { return std::max(1, static_cast<int>(std::lround(length / spacing))); };
+  const int nx = fit(size.x), ny = fit(size.y);
+  std::vector<Vec3> result;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t layer = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny);
+    const auto x = static_cast<Real>(k % static_cast<std::size_t>(nx));
+    const auto y = static_cast<Real>(k / static_cast<std::size_t>(nx) % static_cast<std::size_t>(ny));
+    const auto z = static_cast<Real>(k / layer);
+    result.push_back(
+        {spacing * (x - 0.5 * (nx - 1)), spacing * (y - 0.5 * (ny - 1)), spacing * (z + 0.5) - 0.5 * size.z});
+  }
+  return result;
+}
+
+// Whether liquid lies nearer than free_distance to any of the new particles.
+bool occupied(const Source& s, const std::vector<Vec3>& points, const Liquid& liquid) {
+  const Real gap = free_distance * liquid.spacing();
+  Bounds box;
+  Real farthest = 0;
+  for (const Vec3& p : points) box.include(p), farthest = std::max(farthest, squared_norm(p));
+  box.grow(gap);
+  const Real reach = std::sqrt(farthest) + gap;
+  return std::any_of(liquid.particles.position.begin(), liquid.particles.position.end(), [&](const Float4& f) {
+    const Vec3 p = Vec3{f.x, f.y, f.z} - s.centre;
+    return box.contains(p) && (s.form == SourceForm::box || squared_norm(p) < reach * reach);
+  });
+}
+
+}  // namespace
+
+Real next_emission(const Source& source) {
+  if (source.emitted >= source.count) return std::numeric_limits<Real>::infinity();
+  return source.start + source.interval * source.emitted;
+}
+
+std::size_t particle_count(const Source& source, const Liquid& liquid) {
+  return rounded_count(volume_of(source), liquid.particle_mass / liquid.kind.density);
+}
+
+Bounds bounds_of(const Source& source) {
+  const Real radius = std::cbrt(3 * source.volume / (4 * pi));
+  const Vec3 half = source.form == SourceForm::box ? 0.5 * source.size : Vec3{radius, radius, radius};
+  return {source.centre - half, source.centre + half};
+}
+
+EmitReport emit(Source& source, Liquid& liquid, Real t0, Real t1) {
+  IMBIBE_ASSERT(liquid.particle_mass > 0 && t1 >= t0);
+  EmitReport report;
+  const Real particle_volume = liquid.particle_mass / liquid.kind.density;
+  while (next_emission(source) < t1) {
+    const Real wanted = volume_of(source) + source.carried;
+    const std::size_t count = rounded_count(wanted, particle_volume);
+    const std::vector<Vec3> points = source.form == SourceForm::box
+                                         ? box_lattice(count, source.size, liquid.spacing())
+                                         : ball_lattice(count, liquid.spacing());
+    if (occupied(source, points, liquid)) {
+      report.waiting = true;
+      break;
+    }
+    for (const Vec3& p : points) add_particle(liquid, source.centre + p, source.velocity);
+    const Real kg = static_cast<Real>(count) * liquid.particle_mass;
+    source.carried = wanted - static_cast<Real>(count) * particle_volume;
+    source.supplied_kg += kg;
+    ++source.emitted;
+    report.particles += count;
+    report.kg += kg;
+  }
+  return report;
+}
+
+}  // namespace imbibe
