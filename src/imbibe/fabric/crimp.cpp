@@ -1,0 +1,51 @@
+#include "imbibe/fabric/crimp.h"
+
+#include <algorithm>
+
+namespace imbibe {
+
+Real least_span(Real height_change, Real radius_from, Real radius_to) {
+  const Real h = std::abs(height_change), radii = radius_from + radius_to;
+  return h >= radii ? radii : std::sqrt((2 * radii - h) * h);
+}
+
+CrimpCurve crimp_curve(Real span, Real from, Real to, Real radius_from, Real radius_to) {
+  CrimpCurve curve{span, from, to, radius_from, radius_to, 0, span, span};
+  const Real h = std::abs(to - from), radii = radius_from + radius_to;
+  if (h <= 0) return curve;
+  // (radii - h, span) is (radii, straight) turned by theta.
+  curve.straight = std::sqrt(std::max(span * span - (2 * radii - h) * h, Real(0)));
+  curve.angle = std::atan2(span, radii - h) - std::atan2(curve.straight, radii);
+  curve.length = radii * curve.angle + curve.straight;
+  return curve;
+}
+
+CrimpPoint point_at(const CrimpCurve& c, Real arc) {
+  const Real sign = c.to < c.from ? -1 : 1;
+  const Real first = c.radius_from * c.angle, second = first + c.straight;
+  if (c.angle <= 0) return {arc, c.from};
+  if (arc < first) {
+    const Real a = arc / c.radius_from;
+    // 1 - cos a = 2 sin^2(a/2): exact for small angles too.
+    const Real half = std::sin(a / 2);
+    return {c.radius_from * std::sin(a), c.from + sign * c.radius_from * 2 * half * half};
+  }
+  if (arc <= second) {
+    const Real along = c.radius_from * std::sin(c.angle) + (arc - first) * std::cos(c.angle);
+    const Real up = c.radius_from * (1 - std::cos(c.angle)) + (arc - first) * std::sin(c.angle);
+    return {along, c.from + sign * up};
+  }
+  const Real a = (c.length - arc) / c.radius_to, half = std::sin(a / 2);
+  return {c.span - c.radius_to * std::sin(a), c.to - sign * c.radius_to * 2 * half * half};
+}
+
+Real arc_at(const CrimpCurve& c, Real along) {
+  if (c.angle <= 0) return along;
+  const Real bend = c.radius_from * std::sin(c.angle);
+  if (along < bend) return c.radius_from * std::asin(along / c.radius_from);
+  const Real second = c.span - c.radius_to * std::sin(c.angle);
+  if (along <= second) return c.radius_from * c.angle + (along - bend) / std::cos(c.angle);
+  return c.length - c.radius_to * std::asin(std::min((c.span - along) / c.radius_to, Real(1)));
+}
+
+}  // namespace imbibe
