@@ -1,0 +1,218 @@
+// imbibe run: simulates a scene into a run folder, with pictures, film and report.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "apps/commands.h"
+#include "imbibe/core/error.h"
+#include "imbibe/core/parallel.h"
+#include "imbibe/io/progress.h"
+#include "imbibe/io/report.h"
+#include "imbibe/io/run_folder.h"
+#include "imbibe/scene/builder.h"
+#include "imbibe/scene/library.h"
+#include "imbibe/scene/scene.h"
+#include "imbibe/sim/checkpoint.h"
+#include "imbibe/sim/mechanism.h"
+#include "imbibe/sim/run.h"
+#include "imbibe/view/frame_from_world.h"
+#include "imbibe/view/run_pictures.h"
+
+namespace fs = std::filesystem;
+using namespace imbibe;
+
+namespace {
+
+volatile std::sig_atomic_t stop_signal = 0;  // the one global: a signal handler can reach nothing else
+void on_signal(int number) { stop_signal = number; }
+
+struct RunArguments {
+  std::string scene;
+  std::string output;
+  std::vector<std::string> overrides;
+  double until = -1;
+  int threads = 0;
+  bool resume = false, overwrite = false, no_pictures = false;
+  std::string progress = "auto";
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// runs/<scene>, or the next free runs/<scene>_2, ...: a rerun never touches an earlier result.
+fs::path free_run_folder(const fs::path& scene) {
+  const std::string stem = scene.stem().string();
+  for (int i = 1;; ++i) {
+    const fs::path folder = fs::path("runs") / (i == 1 ? stem : fmt::format("{}_{}", stem, i));
+    if (!fs::exists(folder)) return folder;
+  }
+}
+
+ProgressStyle progress_style(const std::string& wanted) {
+  if (wanted == "json") return ProgressStyle::json;
+  if (wanted == "lines") return ProgressStyle::lines;
+  return isatty(STDERR_FILENO) ? ProgressStyle::terminal : ProgressStyle::lines;
+}
+
+Progress progress_of(const World& world, const StepReport& report, Real until, Real wall) {
+  const MassBalance b = mass_balance(world);
+  Progress p;
+  p.time_s = world.time, p.until_s = until, p.wall_s = wall;
+  p.step_s = report.step_s, p.step_bound = report.step_bound;
+  p.free_kg = b.free, p.absorbed_kg = b.sorbed + b.yarn + b.pore + b.cell - b.initial, p.evaporated_kg = b.evaporated;
+  p.ledger_error = b.error();
+  p.steps = world.step, p.particles = world.liquid.particles.size();
+  return p;
+}
+
+// Everything a run has open at once, so that each way out can save and close it.
+class RunSession {
+ public:
+  RunSession(const RunArguments& arguments, const CommandContext& context)
+      : arguments_(arguments), scene_file_(arguments.scene) {
+    if (arguments.resume && fs::is_directory(scene_file_)) folder_path_ = scene_file_, scene_file_ /= "scene.yaml";
+    scene_ = read_scene(scene_file_, arguments.overrides);
+    if (arguments.until > 0) scene_.duration = arguments.until;
+    if (!arguments.output.empty()) folder_path_ = arguments.output;
+    if (folder_path_.empty()) folder_path_ = free_run_folder(scene_file_);
+    world_ = build_world(scene_, Library(library_folders(scene_file_, context.data_folders)));
+    if (arguments.resume) resume();
+    RunSetup setup;
+    setup.command = context.command_line;
+    setup.title = scene_.title;
+    setup.scene_yaml = write_scene(scene_);
+    setup.seed = world_.seed;
+    setup.threads = available_threads();
+    setup.until_s = scene_.duration;
+    for (const Textile& textile : world_.textiles)
+      setup.fabrics.emplace_back(textile.name,
+                                 describe_fabric(*textile.fabric, {world_.liquid.kind.name, world_.liquid.kind.density,
+                                                                   world_.liquid.kind.surface_tension}));
+    setup.measures = scene_.measures;
+    setup.particle_files = scene_.output.particles;
+    setup.textile_files = scene_.output.textiles;
+    folder_ = std::make_unique<RunFolder>(folder_path_, std::move(setup),
+                                          arguments.resume      ? ExistingFolder::resume
+                                          : arguments.overwrite ? ExistingFolder::overwrite
+                                                                : ExistingFolder::refuse,
+                                          world_);
+    if (scene_.output.pictures && !arguments.no_pictures)
+      pictures_ = std::make_unique<RunPictures>(folder_path_, scene_.picture);
+  }
+
+  int go() {
+    ProgressWriter progress(std::cerr, progress_style(arguments_.progress));
+    RunPlan plan;
+    plan.until = scene_.duration;
+    plan.every = output_interval(scene_);
+    plan.max_steps = scene_.limits.max_steps ? static_cast<std::uint64_t>(*scene_.limits.max_steps) : 0;
+    RunHooks hooks;
+    hooks.at_output = [&](const World& world, const StepReport& report) { write(world, report); };
+    hooks.after_step = [&](const World& world, const StepReport& report) {
+      progress.show(progress_of(world, report, plan.until, seconds_since(started_)));
+      if (seconds_since(last_checkpoint_) < scene_.output.checkpoint_every.value_or(60)) return;
+      folder_->write_checkpoint(world);
+      last_checkpoint_ = std::chrono::steady_clock::now();
+    };
+    hooks.stop_requested = [] { return stop_signal != 0; };
+    try {
+      const RunEnd end = run(world_, plan, hooks);
+      progress.finish();
+      folder_->write_checkpoint(world_);
+      close(end == RunEnd::finished ? RunStatus::done : RunStatus::interrupted,
+            end == RunEnd::finished ? "" : "stopped by a signal");
+      return end == RunEnd::finished ? 0 : 130;
+    } catch (const NumericalError& error) {
+      progress.finish();
+      close(RunStatus::failed, error.what());
+      throw;
+    } catch (const InputError& error) {  // the machine: a full disk, a vanished folder, a limit
+      progress.finish();
+      std::fprintf(stderr, "%s\n", error.what());
+      close_quietly(error.what());
+      return 1;
+    }
+  }
+
+ private:
+  void resume() {
+    std::vector<std::string> passed_over;
+    const auto from = read_newest_checkpoint(folder_path_, world_, &passed_over);
+    for (const std::string& damaged : passed_over) std::fprintf(stderr, "passed over: %s\n", damaged.c_str());
+    if (!from) throw InputError(fmt::format("{}: no checkpoint to resume from", folder_path_.string()));
+    std::fprintf(stderr, "resuming from %s at t = %.6g s\n", from->c_str(), world_.time);
+  }
+
+  void write(const World& world, const StepReport& report) {
+    folder_->write_output(world, report);
+    if (pictures_)
+      pictures_->add(frame_from_world(world, scene_.title),
+                     static_cast<int>(std::lround(world.time / output_interval(scene_))));
+  }
+
+  void close(RunStatus status, const std::string& reason) {
+    for (const std::string& sentence : explain_uptake(world_)) folder_->note(sentence);
+    folder_->finish(world_, status, reason);
+    const FilmResult film = pictures_ ? pictures_->finish() : FilmResult{false, "no pictures were asked for"};
+    const fs::path report = write_report(folder_path_);
+    std::printf("%s after %.1f s of wall time\n", status == RunStatus::done ? "done" : reason.c_str(),
+                seconds_since(started_));
+    std::printf("  run folder  %s\n  report      %s\n", folder_path_.c_str(), report.c_str());
+    if (pictures_) std::printf("  pictures    %s\n", (folder_path_ / "pictures").c_str());
+    std::printf("  film        %s\n", film.message.c_str());
+    std::printf("  ParaView    %s (and textile_*.pvd)\n", (folder_path_ / "liquid.pvd").c_str());
+    if (status == RunStatus::interrupted)
+      std::printf("  go on with  imbibe run %s --resume\n", folder_path_.c_str());
+  }
+
+  // The disk may be full: what can be said is said, what cannot be written stays as it last was.
+  void close_quietly(const std::string& reason) {
+    try {
+      folder_->finish(world_, RunStatus::failed, reason);
+    } catch (const std::exception&) {
+    }
+  }
+
+  RunArguments arguments_;
+  fs::path scene_file_, folder_path_;
+  Scene scene_;
+  World world_;
+  std::unique_ptr<RunFolder> folder_;
+  std::unique_ptr<RunPictures> pictures_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_;
+};
+
+}  // namespace
+
+void add_run_command(CLI::App& app, CommandContext& context) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "simulate a scene into a run folder");
+  command->add_option("scene", arguments->scene, "scene file; with --resume also a run folder")->required();
+  command->add_option("-o,--output", arguments->output, "run folder; default runs/<scene>, numbered when taken");
+  command->add_option("--set", arguments->overrides, "path=value: change a key of the scene")->allow_extra_args(false);
+  command->add_option("--until", arguments->until, "simulated seconds, in place of the scene's duration")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--threads", arguments->threads, "0 = all cores; results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  command->add_flag("--resume", arguments->resume, "go on from the newest checkpoint of the run folder");
+  command->add_flag("--overwrite", arguments->overwrite, "replace an earlier run in the folder given with -o");
+  command->add_flag("--no-pictures", arguments->no_pictures, "no pictures and no film");
+  command->add_option("--progress", arguments->progress, "auto | lines | json")
+      ->check(CLI::IsMember({"auto", "lines", "json"}));
+  command->callback([arguments, &context] {
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    std::signal(SIGPIPE, SIG_IGN);
+    std::unique_ptr<ThreadLimit> limit;
+    if (arguments->threads > 0) limit = std::make_unique<ThreadLimit>(arguments->threads);
+    context.exit_code = RunSession(*arguments, context).go();
+  });
+}

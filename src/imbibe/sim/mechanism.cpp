@@ -1,0 +1,56 @@
+#include "imbibe/sim/mechanism.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace imbibe {
+namespace {
+
+std::string entry_sentence(const Textile& textile, std::size_t type) {
+  const YarnType& yarn = textile.fabric->network.yarn_types[type];
+  const YarnWetting& wetting = textile.model->yarns[type];
+  const Real angle = degrees(std::acos(std::clamp(wetting.cos_advancing, -1.0, 1.0)));
+  const std::string who = fmt::format("{} at {:.0f}°", yarn.fibre.name, angle);
+  if (yarn.monofilament)
+    return fmt::format("{}: a monofilament, which holds no liquid between fibres", who);
+  if (wetting.wets)
+    return fmt::format("{}: fills by itself, the voids between its fibres suck with {:.2g} kPa at entry", who,
+                       1e-3 * wetting.entry);
+  return fmt::format("{}: no capillary entry between its fibres", who);
+}
+
+std::string pore_sentence(const WettingModel& model) {
+  if (model.pores == 0 || !model.params.pores) return "Pores between yarns take no part.";
+  const auto wetting = static_cast<std::size_t>(std::count(model.pore_wets.begin(), model.pore_wets.end(), 1));
+  if (wetting > 0)
+    return fmt::format("Pores between yarns fill with up to {:.0f} Pa of suction and hold until {:.0f} Pa.",
+                       *std::max_element(model.pore_entry.begin(), model.pore_entry.end()),
+                       *std::min_element(model.pore_open.begin(), model.pore_open.end()));
+  return fmt::format("Pores between yarns stay shut: liquid must press with {:.0f} Pa to break through.",
+                     *std::min_element(model.pore_breakthrough.begin(), model.pore_breakthrough.end()));
+}
+
+}  // namespace
+
+std::vector<std::string> explain_uptake(const World& world) {
+  std::vector<std::string> sentences;
+  for (const Textile& textile : world.textiles) {
+    std::string entry;
+    for (std::size_t type = 0; type < textile.fabric->network.yarn_types.size(); ++type)
+      entry += (type ? "; " : "") + entry_sentence(textile, type);
+    sentences.push_back(fmt::format("{}: {}. {}", textile.name, entry, pore_sentence(*textile.model)));
+    const Real force = textile.exchange.normal_force;
+    sentences.push_back(fmt::format(
+        "{}: {:.3g} mg between fibres, {:.3g} mg in pores, {:.3g} mg in fibre substance (with the regain at the start); "
+        "{} particles were taken whole, {} came back; the liquid pressed with {:.3g} mN at the end.",
+        textile.name, 1e6 * total_yarn_kg(*textile.model, textile.contents),
+        1e6 * total_pore_kg(*textile.model, textile.contents),
+        1e6 * total_sorbed_kg(*textile.model, textile.contents), textile.exchange.absorbed_particles,
+        textile.exchange.released_particles, 1e3 * force));
+  }
+  return sentences;
+}
+
+}  // namespace imbibe

@@ -1,0 +1,161 @@
+#include "imbibe/coupling/footprint.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "imbibe/coupling/absorption.h"
+#include "imbibe/coupling/release.h"
+#include "support/woven.h"
+
+namespace imbibe {
+namespace {
+
+struct Scene {
+  Fabric fabric = test::woven("cotton", "cotton", 16);
+  Placement placement;
+  Liquid liquid;
+  FaceMap map;
+  ExchangeState exchange;
+  Footprint footprint;
+
+  Scene() {
+    liquid.particle_mass = 998.2 * std::pow(0.5e-3, 3);
+    map = build_face_map(fabric.network, liquid.spacing());
+    exchange.owed_kg.assign(fabric.network.nodes(), 0);
+    exchange.waiting_kg.assign(fabric.network.nodes(), 0);
+  }
+  // A layer of particles that touches the face, side x side, centred on (x, y).
+  void add_layer(int side, Real x, Real y) {
+    const Real dx = liquid.spacing(), z = 0.5 * fabric.network.thickness + 0.5 * dx;
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i)
+        add_particle(liquid, {x + (i - 0.5 * (side - 1)) * dx, y + (j - 0.5 * (side - 1)) * dx, z}, {0, 0, -0.1});
+  }
+  void find() { find_footprint(liquid, fabric.network, placement, map, exchange, footprint); }
+  Real owed() const { return std::accumulate(exchange.owed_kg.begin(), exchange.owed_kg.end(), 0.0); }
+};
+
+TEST(Footprint, SharesOfEveryTouchingParticleSumToOne) {
+  Scene s;
+  s.add_layer(8, 0, 0);
+  s.find();
+  ASSERT_EQ(s.footprint.particle.size(), 64u);
+  for (std::size_t p = 0; p < 64; ++p) {
+    Real sum = 0;
+    for (Index l = s.footprint.first_link[p]; l < s.footprint.first_link[p + 1]; ++l) sum += s.footprint.links[l].share;
+    EXPECT_NEAR(sum, 1, 1e-12);
+  }
+}
+
+TEST(Footprint, AvailableMassIsTheMassOfTheTouchingParticlesLessTheirDebt) {
+  Scene s;
+  s.add_layer(8, 0, 0);
+  s.exchange.owed_kg[s.map.node.front()] = 0;  // outside the footprint
+  s.find();
+  const Index node = s.footprint.supplies.front().node;
+  s.exchange.owed_kg[node] = 3.5 * s.liquid.particle_mass;
+  s.find();
+  Real available = 0;
+  for (const FaceSupply& supply : s.footprint.supplies) available += supply.available_kg;
+  EXPECT_NEAR(available, (64 - 3.5) * s.liquid.particle_mass, 1e-12 * 64 * s.liquid.particle_mass);
+}
+
+TEST(Footprint, NodesUnderTheMiddleOfALayerAreFullyWetted) {
+  Scene s;
+  s.add_layer(16, 0, 0);
+  s.find();
+  int inner = 0;
+  for (const FaceSupply& supply : s.footprint.supplies) {
+    const Vec3& c = s.fabric.network.node_centre(supply.node);
+    if (std::hypot(c.x, c.y) > 1.5e-3) continue;
+    ++inner;
+    // A square lattice of dx = reach/3 samples the kernel's integral within 2 %.
+    EXPECT_NEAR(supply.wetted_share, 1, 0.02);
+  }
+  EXPECT_GT(inner, 10);
+}
+
+TEST(Footprint, TwoDistantDropsAreTwoPatchesAndAJoiningRowMakesOne) {
+  Scene s;
+  s.add_layer(4, -4e-3, 0);
+  s.add_layer(4, 4e-3, 0);
+  s.find();
+  EXPECT_EQ(s.footprint.patches.size(), 2u);
+  for (Real x = -4e-3; x <= 4e-3; x += 0.5e-3)
+    add_particle(s.liquid, {x, 2e-3, 0.5 * s.fabric.network.thickness + 0.25e-3}, {});
+  s.find();
+  EXPECT_EQ(s.footprint.patches.size(), 1u);
+}
+
+TEST(Footprint, PressureOfARestingPatchIsWeightPlusCurvature) {
+  Scene s;
+  s.add_layer(10, 0, 0);
+  s.exchange.normal_force = 4e-4;
+  s.find();
+  const Real area = 100 * s.liquid.spacing() * s.liquid.spacing(), radius = std::sqrt(area / pi);
+  const Real expected = 4e-4 / area + 2 * s.liquid.kind.surface_tension * std::sin(radians(45)) / radius;
+  EXPECT_NEAR(s.footprint.patches.front().pressure, expected, 1e-6 * expected);  // cosines are stored as float
+}
+
+TEST(Absorption, ParticlesDieForWholeMassesOnlyAndTheBooksAddUp) {
+  Scene s;
+  s.add_layer(8, 0, 0);
+  s.find();
+  std::vector<Real> taken(s.footprint.supplies.size());
+  for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = 0.07 * s.footprint.supplies[i].available_kg;
+  const Real sum = std::accumulate(taken.begin(), taken.end(), 0.0);  // 0.07 * 64 = 4.48 particles
+  book_taken(s.footprint, taken, s.exchange);
+  std::vector<std::uint8_t> dead(64, 0);
+  const Transfer transfer = absorb_particles(s.liquid, s.footprint, s.exchange, dead);
+  EXPECT_EQ(transfer.particles, 4u);
+  EXPECT_EQ(std::accumulate(dead.begin(), dead.end(), 0), 4);
+  EXPECT_NEAR(s.owed() + transfer.kg, sum, 1e-13 * sum);
+  EXPECT_NEAR(transfer.momentum.z, -0.1 * 4 * s.liquid.particle_mass, 1e-7 * s.liquid.particle_mass);  // float speeds
+  EXPECT_EQ(remove_particles(s.liquid.particles, dead), 4u);
+  EXPECT_EQ(s.liquid.particles.size(), 60u);
+}
+
+TEST(Absorption, LiquidGivenBackPaysDebtsFirstAndThenWaits) {
+  Scene s;
+  s.add_layer(2, 0, 0);
+  s.find();
+  const Index node = s.footprint.supplies[0].node;
+  s.exchange.owed_kg[node] = 2e-9;
+  std::vector<Real> taken(s.footprint.supplies.size(), 0);
+  taken[0] = -5e-9;
+  book_taken(s.footprint, taken, s.exchange);
+  EXPECT_EQ(s.exchange.owed_kg[node], 0);
+  EXPECT_NEAR(s.exchange.waiting_kg[node], 3e-9, 1e-24);
+}
+
+TEST(Release, WaitingMassBecomesParticlesBelowTheSheetAndNothingIsRounded) {
+  Scene s;
+  const Index node = s.map.node[s.map.node.size() / 2];
+  s.exchange.waiting_kg[node] = 1.25 * s.liquid.particle_mass;
+  const ReleaseReport report =
+      release_particles(s.fabric.network, s.placement, s.map, {}, {0, 0, -9.81}, s.exchange, s.liquid);
+  ASSERT_EQ(report.particles, 1u);
+  const Real waiting = std::accumulate(s.exchange.waiting_kg.begin(), s.exchange.waiting_kg.end(), 0.0);
+  EXPECT_NEAR(waiting, 0.25 * s.liquid.particle_mass, 1e-13 * s.liquid.particle_mass);
+  EXPECT_LT(s.liquid.particles.position[0].z, -0.5 * s.fabric.network.thickness);
+}
+
+TEST(Release, NoParticleIsBornInsideAnother) {
+  Scene s;
+  const Index node = s.map.node[s.map.node.size() / 2];
+  s.exchange.waiting_kg[node] = 5 * s.liquid.particle_mass;
+  release_particles(s.fabric.network, s.placement, s.map, {}, {0, 0, -9.81}, s.exchange, s.liquid);
+  const ReleaseReport again =
+      release_particles(s.fabric.network, s.placement, s.map, {}, {0, 0, -9.81}, s.exchange, s.liquid);
+  EXPECT_EQ(again.particles, 0u);  // the place is taken
+  EXPECT_EQ(s.liquid.particles.size(), 1u);
+}
+
+TEST(Release, SpeedIsTorricellis) {
+  EXPECT_NEAR(release_speed(100, 998.2), std::sqrt(200 / 998.2), 1e-12);
+  EXPECT_EQ(release_speed(-1, 998.2), 0);
+}
+
+}  // namespace
+}  // namespace imbibe

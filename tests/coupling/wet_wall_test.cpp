@@ -1,0 +1,67 @@
+#include "imbibe/coupling/wet_wall.h"
+
+#include <gtest/gtest.h>
+
+#include "support/woven.h"
+
+namespace imbibe {
+namespace {
+
+TEST(WetWall, ADryFaceShowsTheYarnsAdvancingAngle) {
+  const Fabric fabric = test::woven("cotton", "cotton");
+  const FaceMap map = build_face_map(fabric.network, 0.5e-3);
+  const Placement placement;
+  const Shape shape = sheet_shape(fabric.network, placement);
+  const std::vector<float> dry(fabric.network.nodes(), 0);
+  const Wall wall = wet_wall(shape, fabric.network, placement, map, dry);
+  EXPECT_NEAR(wall.cos_contact_angle_at({0, 0, 0.5e-3}), std::cos(radians(45)), 1e-6);
+}
+
+TEST(WetWall, AWetHydrophilicFaceIsMoreWettableByCassiesLaw) {
+  // 45 degrees, half of the face liquid: cos = 0.5 cos 45 + 0.5, 31.4 degrees.
+  EXPECT_NEAR(degrees(std::acos(cos_wet_face(std::cos(radians(45)), 1))), 31.4, 0.05);
+  Real last = -2;
+  for (Real s = 0; s <= 1; s += 0.1) {
+    EXPECT_GT(cos_wet_face(0.2, s), last);
+    last = cos_wet_face(0.2, s);
+  }
+}
+
+TEST(WetWall, AMixedClothShowsTheMeanOfItsYarns) {
+  const Fabric fabric = test::woven("cotton", "polypropylene");
+  const FaceMap map = build_face_map(fabric.network, 0.5e-3);
+  const Placement placement;
+  const Shape shape = sheet_shape(fabric.network, placement);
+  const std::vector<float> dry(fabric.network.nodes(), 0);
+  const Wall wall = wet_wall(shape, fabric.network, placement, map, dry);
+  // Equal shares of cotton (45) and polypropylene (100) within the reach of the kernel.
+  EXPECT_NEAR(wall.cos_contact_angle_at({0, 0, 0.5e-3}), 0.5 * (std::cos(radians(45)) + std::cos(radians(100))), 0.02);
+}
+
+TEST(FaceMap, FindsEveryNodeWithinReach) {
+  const Fabric fabric = test::woven("cotton", "cotton", 10);
+  const FaceMap map = build_face_map(fabric.network, 0.7e-3);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {2.3e-3, -1.7e-3}, {-4.9e-3, 4.9e-3}}) {
+    std::size_t all = 0, found = 0;
+    const auto within = [&](Index k) {
+      const Vec3& c = fabric.network.node_centre(k);
+      return std::hypot(c.x - x, c.y - y) < map.reach;
+    };
+    for (Index k = 0; k < fabric.network.nodes(); ++k) all += within(k);
+    map.near(x, y, [&](Index k) { found += within(k); });
+    EXPECT_EQ(found, all);
+  }
+}
+
+TEST(FaceMap, KernelIntegratesToOneOverThePlane) {
+  Real sum = 0;
+  const int n = 400;
+  for (int i = 0; i < n; ++i) {
+    const Real r = (i + 0.5) / n;
+    sum += 2 * pi * r * face_kernel(r, 1) / n;
+  }
+  EXPECT_NEAR(sum, 1, 1e-5);  // midpoint rule, error of order 1/n^2
+}
+
+}  // namespace
+}  // namespace imbibe
