@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "imbibe/scene/picture_options.h"
 #include "imbibe/view/frame.h"
@@ -13,7 +14,6 @@ struct Camera {
   Vec3 right{1, 0, 0}, up{0, 0, 1}, forward{0, 1, 0};  // unit
   Real tan_half_height = 0.25;
   Real aspect = 16.0 / 9;
-  Real shift_x = 0, shift_y = 0;  // of the picture plane, in half heights (as a view camera's shift)
 };
 
 // Position in the image, 0..1 from the top left, and depth along `forward` (m).
@@ -29,10 +29,12 @@ struct Margins {
   Real left = 0.05, right = 0.05, top = 0.05, bottom = 0.05;
 };
 
+// The nearest place from which all of `content` lies within the margins, looking as the options say.
 Camera fitted_camera(std::span<const Vec3> content, const PictureOptions& options, const Margins& margins);
 
-// The corners a fitted camera keeps in view: cloth, solids, and the liquid near them.
+// The points a fitted camera keeps in view: cloth, and solids and liquid that are not far from it.
 std::vector<Vec3> content_of(const Frame& frame);
-Camera camera_for(const Frame& frame, const PictureOptions& options);
+// Leaves room for the legend where there is one.
+Camera camera_for(std::span<const Vec3> content, const PictureOptions& options);
 
 }  // namespace imbibe

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
 #include "imbibe/core/types.h"
@@ -27,6 +26,7 @@ float linear_from_srgb(float encoded);
 
 // Lays `colour` (sRGB, 0..1) over the pixel with coverage `alpha`; outside the image nothing happens.
 void blend_pixel(Image& image, int x, int y, const Vec3f& colour, float alpha);
+void draw_line(Image& image, Real x0, Real y0, Real x1, Real y1, Real width, const Vec3f& colour);
 void fill_rectangle(Image& image, int x0, int y0, int x1, int y1, const Vec3f& colour, float alpha = 1);
 
 }  // namespace imbibe

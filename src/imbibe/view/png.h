@@ -7,7 +7,7 @@
 
 namespace imbibe {
 
-// Writes beside `path` and renames, so a reader never sees half a picture. InputError when the file cannot be written.
+// Writes beside `path` and renames, so a reader never sees half a picture. OutputError when the file cannot be written.
 void write_png(const std::filesystem::path& path, const Image& image);
 Image read_png(const std::filesystem::path& path);
 

@@ -1,0 +1,235 @@
+#include "imbibe/view/ray_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+
+#include "imbibe/core/error.h"
+#include "imbibe/view/liquid_surface.h"
+#include "imbibe/view/shape_mesh.h"
+
+namespace imbibe {
+
+namespace {
+
+struct Release {
+  void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+  void operator()(RTCScene s) const { rtcReleaseScene(s); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Release>;
+using Scene = std::unique_ptr<RTCSceneTy, Release>;
+
+RTCRayHit ray_of(const Ray& ray, float limit) {
+  RTCRayHit r{};
+  r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
+  r.ray.dir_x = ray.direction.x, r.ray.dir_y = ray.direction.y, r.ray.dir_z = ray.direction.z;
+  r.ray.tfar = limit;
+  r.ray.mask = ~0u;
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return r;
+}
+
+Vec3f facing(const Vec3f& normal, const Vec3f& direction) { return dot(normal, direction) > 0 ? -normal : normal; }
+
+void attach_mesh(RTCDevice device, RTCScene scene, const DrawnMesh& mesh, unsigned id) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               sizeof(Vec3f), mesh.vertices.size()));
+  std::copy(mesh.vertices.begin(), mesh.vertices.end(), vertices);
+  auto* triangles = static_cast<std::array<Index, 3>*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(std::array<Index, 3>), mesh.triangles.size()));
+  std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+Vec3f mesh_normal(const DrawnMesh& mesh, const RTCHit& hit) {
+  if (mesh.normals.empty()) return normalized(Vec3f{hit.Ng_x, hit.Ng_y, hit.Ng_z});
+  const auto& t = mesh.triangles[hit.primID];
+  return normalized(mesh.normals[t[0]] * (1 - hit.u - hit.v) + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v);
+}
+
+struct SolidPart {
+  DrawnMesh mesh;
+  Vec3f colour;
+};
+
+}  // namespace
+
+struct RayScene::Parts {
+  const Frame& frame;
+  Device device;
+  Scene solids, liquid;
+  std::vector<SolidPart> parts;
+  DrawnMesh liquid_mesh;
+  std::vector<Index> piece_point, piece_yarn;  // of every straight piece of the yarns
+  std::vector<Vec3f> tangent;                  // per yarn point
+  std::vector<float> along;                    // per yarn point, m
+  unsigned yarn_geometry = RTC_INVALID_GEOMETRY_ID;
+  float skin = 1e-7f;
+
+  explicit Parts(const Frame& f);
+  void prepare_yarns();
+  void attach_yarns(unsigned id);
+  void yarn_hit(const RTCRayHit& found, const Ray& ray, SolidHit& hit) const;
+};
+
+RayScene::Parts::Parts(const Frame& f) : frame(f) {
+  // Trees are built by one thread: then they, and with them the last bit of every hit, are always the same.
+  device.reset(rtcNewDevice("threads=1,set_affinity=0"));
+  if (!device) throw std::runtime_error("pictures: the ray tracing library does not start on this machine");
+  solids.reset(rtcNewScene(device.get()));
+  liquid.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(solids.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(liquid.get(), RTC_SCENE_FLAG_ROBUST);
+
+  for (const DrawnSolid& solid : frame.solids) {
+    DrawnMesh mesh = solid.mesh.triangles.empty() ? mesh_of(solid.shape) : solid.mesh;
+    if (!mesh.triangles.empty()) parts.push_back({std::move(mesh), solid.colour});
+  }
+  for (unsigned i = 0; i < parts.size(); ++i) attach_mesh(device.get(), solids.get(), parts[i].mesh, i);
+  if (frame.yarns.yarns() > 0) {
+    prepare_yarns();
+    if (!piece_point.empty()) attach_yarns(static_cast<unsigned>(parts.size()));
+  }
+  rtcCommitScene(solids.get());
+  if (!frame.particles.empty()) liquid_mesh = liquid_surface(frame.particles, frame.particle_spacing);
+  if (!liquid_mesh.triangles.empty()) attach_mesh(device.get(), liquid.get(), liquid_mesh, 0);
+  rtcCommitScene(liquid.get());
+
+  Bounds all = bounds_of_cloth(frame);
+  all.include(bounds_of_solids(frame));
+  all.include(bounds_of_liquid(frame));
+  // Hits are float: their rounding grows with the scene's extent and its distance from the origin.
+  const Real extent = all.empty() ? 1 : norm(all.size()) + norm(all.centre());
+  skin = static_cast<float>(1e-5 * extent);
+}
+
+void RayScene::Parts::prepare_yarns() {
+  const DrawnYarns& y = frame.yarns;
+  tangent.resize(y.points.size());
+  along.resize(y.points.size());
+  for (std::size_t yarn = 0; yarn < y.yarns(); ++yarn) {
+    const Index first = y.first_point[yarn], end = y.first_point[yarn + 1];
+    for (Index i = first; i < end; ++i) {
+      const Index before = i > first ? i - 1 : i, after = i + 1 < end ? i + 1 : i;
+      tangent[i] = normalized(y.points[after] - y.points[before]);
+      along[i] = i > first ? along[i - 1] + norm(y.points[i] - y.points[i - 1]) : 0;
+      if (i + 1 == end) continue;
+      piece_point.push_back(i);
+      piece_yarn.push_back(static_cast<Index>(yarn));
+    }
+  }
+}
+
+void RayScene::Parts::attach_yarns(unsigned id) {
+  const DrawnYarns& y = frame.yarns;
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                                             4 * sizeof(float), y.points.size()));
+  for (std::size_t yarn = 0; yarn < y.yarns(); ++yarn)
+    for (Index i = y.first_point[yarn]; i < y.first_point[yarn + 1]; ++i) {
+      float* p = points + 4 * static_cast<std::size_t>(i);
+      p[0] = y.points[i].x, p[1] = y.points[i].y, p[2] = y.points[i].z, p[3] = y.radius[yarn];
+    }
+  auto* pieces = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                                                                sizeof(unsigned), piece_point.size()));
+  auto* flags = static_cast<unsigned char*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR,
+                                                                    1, piece_point.size()));
+  for (std::size_t i = 0; i < piece_point.size(); ++i) {
+    const Index p = piece_point[i], yarn = piece_yarn[i];
+    pieces[i] = p;
+    flags[i] = static_cast<unsigned char>((p > y.first_point[yarn] ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
+                                          (p + 2 < y.first_point[yarn + 1] ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0));
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(solids.get(), geometry, id);
+  rtcReleaseGeometry(geometry);
+  yarn_geometry = id;
+}
+
+void RayScene::Parts::yarn_hit(const RTCRayHit& found, const Ray& ray, SolidHit& hit) const {
+  const DrawnYarns& y = frame.yarns;
+  const Index piece = found.hit.primID, p = piece_point[piece], yarn = piece_yarn[piece];
+  const float u = std::clamp(found.hit.u, 0.0f, 1.0f);
+  const Vec3f at = ray.origin + ray.direction * found.ray.tfar;
+  const Vec3f centre = y.points[p] * (1 - u) + y.points[p + 1] * u;
+  hit.yarn = true;
+  hit.axis = normalized(tangent[p] * (1 - u) + tangent[p + 1] * u);
+  hit.radius = y.radius[yarn];
+  hit.colour = y.colour[yarn];
+  hit.saturation = y.saturation[p] * (1 - u) + y.saturation[p + 1] * u;
+  hit.along = along[p] * (1 - u) + along[p + 1] * u;
+  // The straight pieces' own normals would show every joint; take them from the smooth axis, but not on end caps.
+  Vec3f normal = hit.flat_normal;
+  const bool cap = (p == y.first_point[yarn] && found.hit.u <= 0) || (p + 2 == y.first_point[yarn + 1] && found.hit.u >= 1);
+  if (!cap) {
+    const Vec3f out = at - centre;
+    const Vec3f across = out - hit.axis * dot(out, hit.axis);
+    if (squared_norm(across) > 0) normal = normalized(across);
+  }
+  hit.normal = facing(normal, ray.direction);
+  const Vec3f side = normalized(cross(hit.axis, Vec3f(frame.up))), face = cross(side, hit.axis);
+  hit.around = std::atan2(dot(normal, side), dot(normal, face));
+}
+
+RayScene::RayScene(const Frame& frame) : parts_(new Parts(frame)) {}
+RayScene::~RayScene() = default;
+bool RayScene::has_liquid() const { return !parts_->liquid_mesh.triangles.empty(); }
+float RayScene::skin() const { return parts_->skin; }
+
+bool RayScene::meets_solid(const Ray& ray, float limit, SolidHit& hit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit found = ray_of(ray, limit);
+  rtcIntersect1(parts_->solids.get(), &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit = {};
+  hit.distance = found.ray.tfar;
+  hit.flat_normal = facing(normalized(Vec3f{found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}), ray.direction);
+  if (found.hit.geomID == parts_->yarn_geometry) {
+    parts_->yarn_hit(found, ray, hit);
+  } else {
+    const SolidPart& part = parts_->parts[found.hit.geomID];
+    hit.normal = facing(mesh_normal(part.mesh, found.hit), ray.direction);
+    hit.colour = part.colour;
+  }
+  return true;
+}
+
+bool RayScene::meets_liquid(const Ray& ray, float limit, LiquidHit& hit) const {
+  if (!has_liquid()) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit found = ray_of(ray, limit);
+  rtcIntersect1(parts_->liquid.get(), &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  const Vec3f flat = normalized(Vec3f{found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z});
+  hit.distance = found.ray.tfar;
+  hit.entering = dot(flat, ray.direction) < 0;
+  hit.normal = mesh_normal(parts_->liquid_mesh, found.hit);
+  // Near the outline a smooth normal may look away from the ray although its face does not.
+  if ((dot(hit.normal, ray.direction) < 0) != hit.entering) hit.normal = flat;
+  return true;
+}
+
+bool RayScene::solid_between(const Ray& ray, float limit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay shadow = ray_of(ray, limit).ray;
+  rtcOccluded1(parts_->solids.get(), &context, &shadow);
+  return shadow.tfar < 0;
+}
+
+bool RayScene::liquid_between(const Ray& ray, float limit) const {
+  if (!has_liquid()) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay shadow = ray_of(ray, limit).ray;
+  rtcOccluded1(parts_->liquid.get(), &context, &shadow);
+  return shadow.tfar < 0;
+}
+
+}  // namespace imbibe
