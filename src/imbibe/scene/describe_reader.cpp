@@ -221,7 +221,8 @@ void DescribeReader::short_form(const char* name) {
 }
 
 void DescribeReader::unavailable(const char* name, const char* message) {
-  known_.emplace_back(name);
+  if (!unknown_word_.empty() && unknown_word_ == name) log_.problems[unknown_word_problem_].message = message;
+  unavailable_.emplace_back(name);
   for (std::size_t i = 0; i < node_.keys.size(); ++i)
     if (node_.keys[i] == name) log_.problems.push_back(problem_at(node_.key_places[i], key_path(name), message));
 }
@@ -236,6 +237,7 @@ void DescribeReader::finish() {
   for (std::size_t i = 0; i < node_.keys.size(); ++i) {
     const std::string& key = node_.keys[i];
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (std::find(unavailable_.begin(), unavailable_.end(), key) != unavailable_.end()) continue;
     const std::string near = nearest_word(key, known_);
     const std::string hint = near.empty() ? fmt::format("known keys: {}", fmt::join(known_, ", "))
                                           : fmt::format("did you mean '{}'?", near);

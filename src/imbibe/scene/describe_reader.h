@@ -7,7 +7,8 @@
 //
 // Beside the four members that every description may use, this visitor takes
 //   v.short_form("kind")             first in a description: a scalar in place of the map is the value of this key
-//   v.unavailable("soft", "...")     a key that is known but cannot be used yet: a problem with a reason of its own
+//   v.unavailable("soft", "...")     after the choices: a key, or the word of a choice, that is known but cannot be used;
+//                                    it is reported with this reason
 // (call them under `if constexpr (requires { v.short_form(""); })` where other visitors lack them).
 //
 // A std::string described with the unit "file" is the path of a file, relative to the file that names it.
@@ -54,14 +55,6 @@ template <class T>
 void read_any(const DataNode& node, const std::string& path, T& out, const ParameterInfo& info, ReadLog& log) {
   read_scalar(node, path, out, info, log);
 }
-template <class T>
-void read_any(const DataNode& node, const std::string& path, std::optional<T>& out, const ParameterInfo& info,
-              ReadLog& log) {
-  T value{};
-  const std::size_t before = log.problems.size();
-  read_any(node, path, value, info, log);
-  if (log.problems.size() == before) out = std::move(value);
-}
 template <class T, std::size_t N>
 void read_any(const DataNode& node, const std::string& path, std::array<T, N>& out, const ParameterInfo& info,
               ReadLog& log) {
@@ -94,6 +87,14 @@ void read_any(const DataNode& node, const std::string& path, std::vector<T>& out
   }
   out = std::move(values);
 }
+template <class T>
+void read_any(const DataNode& node, const std::string& path, std::optional<T>& out, const ParameterInfo& info,
+              ReadLog& log) {
+  T value{};
+  const std::size_t before = log.problems.size();
+  read_any(node, path, value, info, log);
+  if (log.problems.size() == before) out = std::move(value);
+}
 
 }  // namespace reading
 
@@ -114,6 +115,7 @@ class DescribeReader {
     for (const auto& c : choices) words.emplace_back(c.first);
     const std::size_t i = reading::chosen(*node, key_path(name), words, log_);
     if (i < choices.size()) field = choices[i].second;
+    else unknown_word_ = node->text, unknown_word_problem_ = log_.problems.size() - 1;
   }
 
   template <class P>
@@ -142,7 +144,9 @@ class DescribeReader {
   std::string path_;
   ReadLog& log_;
   bool is_map_ = false;
-  std::vector<std::string> known_;
+  std::vector<std::string> known_, unavailable_;
+  std::string unknown_word_;  // a choice that was not one of its words
+  std::size_t unknown_word_problem_ = 0;
 };
 
 template <class P>

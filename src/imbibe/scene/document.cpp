@@ -243,16 +243,17 @@ std::optional<std::string> file_text(const std::filesystem::path& file, const Pl
 }
 
 DataNode read_chain(const std::filesystem::path& file, const Place& asked_from, int depth,
-                    std::vector<Problem>& problems, const DocumentLimits& limits) {
-  const auto text = file_text(file, asked_from, depth == 0 ? "" : "base", problems, limits);
-  if (!text) return {};
-  DataNode own = parse_document(*text, file.string(), problems, limits);
-  if (own.kind != Kind::map) return own;
-  const auto base = take(own, "base");
-  const auto change = take(own, "change");
+                    std::vector<Problem>& problems, const DocumentLimits& limits);
+
+// Replaces a map that says `base` or `change` by the base with this map's keys on top, inner maps first.
+void resolve_bases(DataNode& node, const std::filesystem::path& file, int depth, std::vector<Problem>& problems,
+                   const DocumentLimits& limits) {
+  const auto base = node.kind == Kind::map ? take(node, "base") : std::nullopt;
+  const auto change = node.kind == Kind::map ? take(node, "change") : std::nullopt;
+  for (DataNode& item : node.items) resolve_bases(item, file, depth, problems, limits);
   if (base) {
     if (base->kind != Kind::scalar || base->text.empty()) {
-      problems.push_back(problem_at(base->place, "base", "wants the name of another scene file"));
+      problems.push_back(problem_at(base->place, "base", "wants the name of another file"));
     } else if (depth >= limits.bases) {
       problems.push_back(problem_at(
           base->place, "base", fmt::format("more than {} files build on each other (or in a circle)", limits.bases)));
@@ -260,19 +261,26 @@ DataNode read_chain(const std::filesystem::path& file, const Place& asked_from, 
       const auto path = (file.parent_path() / base->text).lexically_normal();
       DataNode whole = read_chain(path, base->place, depth + 1, problems, limits);
       if (whole.kind == Kind::map) {
-        merge(whole, std::move(own));
-        own = std::move(whole);
+        merge(whole, std::move(node));
+        node = std::move(whole);
       }
     }
   }
-  if (change) {
-    if (change->kind != Kind::map) {
-      problems.push_back(problem_at(change->place, "change", "wants a map of paths to values, e.g. {duration: 1 s}"));
-      return own;
-    }
-    for (std::size_t i = 0; i < change->items.size(); ++i)
-      set_at_path(own, change->keys[i], change->items[i], change->key_places[i], problems);
+  if (!change) return;
+  if (change->kind != Kind::map) {
+    problems.push_back(problem_at(change->place, "change", "wants a map of paths to values, e.g. {duration: 1 s}"));
+    return;
   }
+  for (std::size_t i = 0; i < change->items.size(); ++i)
+    set_at_path(node, change->keys[i], change->items[i], change->key_places[i], problems);
+}
+
+DataNode read_chain(const std::filesystem::path& file, const Place& asked_from, int depth,
+                    std::vector<Problem>& problems, const DocumentLimits& limits) {
+  const auto text = file_text(file, asked_from, depth == 0 ? "" : "base", problems, limits);
+  if (!text) return {};
+  DataNode own = parse_document(*text, file.string(), problems, limits);
+  resolve_bases(own, file, depth, problems, limits);
   return own;
 }
 

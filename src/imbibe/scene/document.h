@@ -1,8 +1,9 @@
 // A scene file as plain data: a tree of maps, lists and scalars, each with its place in a file. YAML (and so JSON) by
 // yaml-cpp's event interface, because the tree that yaml-cpp builds hides duplicate keys and has no size limits.
 //
-//   base: other.yaml          top level only: start from that file; maps merge key by key, lists and scalars replace
-//   change: {a.b[0].c: ...}   top level only: set single keys of the base by their path, as --set does
+// In any map:
+//   base: other.yaml          start from that file's map: maps merge key by key, lists and scalars replace
+//   change: {a.b[0].c: ...}   then set single keys by their path inside this map, as --set does
 //
 // Every node keeps the file, line and column it was written at, so an error points at the file that caused it.
 #pragma once
@@ -50,7 +51,7 @@ struct DocumentLimits {
 DataNode parse_document(const std::string& text, const std::string& file, std::vector<Problem>& problems,
                         const DocumentLimits& limits = {});
 
-// Reads a file with its `base` chain and `change` map resolved.
+// Reads a file with every `base` and `change` resolved. Names of files are relative to the file that gives them.
 DataNode read_document(const std::filesystem::path& file, std::vector<Problem>& problems,
                        const DocumentLimits& limits = {});
 

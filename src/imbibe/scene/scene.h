@@ -129,7 +129,7 @@ void describe(V& v, LiquidSpec& p) {
   v.group("solver", p.solver, "accuracy of the flow solver");
 }
 
-enum class SheetKind { fixed, soft };
+enum class SheetKind { fixed, soft };  // soft: later versions
 
 struct SheetSpec {
   SheetKind kind = SheetKind::fixed;
@@ -143,7 +143,7 @@ void describe(V& v, SheetSpec& p) {
     v.unavailable("soft", "a soft, moving sheet is not available in this version; write `sheet: fixed`");
 }
 
-enum class WettingKind { network, none };
+enum class WettingKind { network, cells };
 
 struct WettingSpec {
   WettingKind kind = WettingKind::network;

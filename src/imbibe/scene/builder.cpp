@@ -1,0 +1,268 @@
+#include "imbibe/scene/builder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "imbibe/core/quantity.h"
+#include "imbibe/scene/placement_checks.h"
+
+namespace imbibe {
+namespace {
+
+// Measured on the arrays of Particles, the sorted copies and the neighbour lists (about 40 neighbours of 4 bytes in
+// two lists) of LiquidFields; and on YarnNetwork, WettingModel, Contents, FaceMap and the solver's matrix.
+constexpr double bytes_per_particle = 900;
+constexpr double bytes_per_node = 700;
+constexpr double bytes_per_edge = 160;
+constexpr double base_bytes = 60e6;  // program, libraries, one picture
+// Files of one output: float32 fields of a .vtp point.
+constexpr double disk_per_particle = 36, disk_per_point = 36, disk_per_pore = 24, disk_per_picture = 6e5;
+
+std::string bytes_text(double bytes) {
+  return bytes >= 1e9 ? fmt::format("{:.3g} GB", bytes / 1e9) : fmt::format("{:.3g} MB", bytes / 1e6);
+}
+
+void check_limits(const Scene& scene, const SceneEstimate& need, std::vector<Problem>& problems) {
+  const auto refuse = [&](const std::string& key, const std::string& message) {
+    problems.push_back(scene_problem(scene, key, message));
+  };
+  if (need.particles > scene.limits.max_particles)
+    refuse("liquid.particle_mass",
+           fmt::format("the liquid would be {:.3g} particles, more than limits.max_particles = {:.3g}; raise "
+                       "particle_mass {:.3g} times or more",
+                       need.particles, scene.limits.max_particles, need.particles / scene.limits.max_particles));
+  const double machine = machine_memory();
+  const double allowed = scene.limits.max_memory.value_or(machine > 0 ? 0.8 * machine : 1e30);
+  if (need.memory_bytes > allowed)
+    refuse(need.particles * bytes_per_particle > 0.5 * need.memory_bytes || scene.textiles.empty()
+               ? "liquid.particle_mass"
+               : "textiles",
+           fmt::format("the scene would need about {} of memory, more than {} ({}): {:.3g} particles, {:.3g} yarn "
+                       "segments",
+                       bytes_text(need.memory_bytes), bytes_text(allowed),
+                       scene.limits.max_memory ? "limits.max_memory" : "80 % of this machine's", need.particles,
+                       need.segments));
+  if (need.disk_bytes > scene.limits.max_disk)
+    refuse("output.every",
+           fmt::format("the run folder would take about {} for {:.3g} outputs, more than limits.max_disk = {}",
+                       bytes_text(need.disk_bytes), need.outputs, bytes_text(scene.limits.max_disk)));
+}
+
+Placement placement_of(const TextileSpec& spec) {
+  Placement p;
+  p.origin = spec.centre;
+  p.u = normalized(spec.weft_direction);
+  p.v = normalized(spec.warp_direction);
+  p.n = cross(p.u, p.v);
+  return p;
+}
+
+// A textile's own contact angle replaces that of all its fibres, so that every part that asks a fibre sees it.
+void set_contact_angles(const TextileSpec& spec, Fabric& fabric) {
+  for (YarnType& type : fabric.network.yarn_types) {
+    Fibre& fibre = type.fibre;
+    if (spec.contact_angle) fibre.advancing_angle = *spec.contact_angle;
+    fibre.receding_angle = spec.receding_angle.value_or(fibre.receding_angle);
+    fibre.receding_angle = std::min(fibre.receding_angle, fibre.advancing_angle);
+  }
+}
+
+void add_at(const Scene& scene, const InputError& error, std::vector<Problem>& problems, const std::string& key = "") {
+  for (const Problem& problem : error.problems()) {
+    if (problem.file.empty()) {
+      const std::string path = key + (key.empty() || problem.key.empty() ? "" : ".") + problem.key;
+      problems.push_back(scene_problem(scene, path, problem.message));
+    } else {
+      problems.push_back(problem);  // of another file, such as a .wif draft
+    }
+  }
+}
+
+void add_textile(const Scene& scene, std::size_t i, const Library& library, World& world,
+                 std::vector<Problem>& problems) {
+  const TextileSpec& spec = scene.textiles[i];
+  const std::string key = fmt::format("textiles[{}]", i);
+  try {
+    auto fabric = std::make_shared<Fabric>(build_fabric(spec.fabric, library.fibres, key));
+    set_contact_angles(spec, *fabric);
+    Textile textile;
+    textile.name = spec.name;
+    textile.placement = placement_of(spec);
+    textile.fabric = std::move(fabric);
+    world.textiles.push_back(std::move(textile));
+  } catch (const InputError& error) {
+    add_at(scene, error, problems);
+  }
+}
+
+void add_wetting(const Scene& scene, std::size_t i, World& world, std::vector<Problem>& problems) {
+  Textile& textile = world.textiles[i];
+  const YarnNetwork& network = textile.fabric->network;
+  const LiquidKind& kind = world.liquid.kind;
+  try {
+    const WettingLiquid liquid{.density = kind.density, .viscosity = kind.viscosity,
+                               .surface_tension = kind.surface_tension};
+    textile.model = std::make_shared<const WettingModel>(
+        build_wetting_model(network, scene.textiles[i].wetting.network, liquid));
+    textile.contents = conditioned_contents(*textile.model, world.air);
+    const Real spacing = world.liquid.particle_mass > 0 ? world.liquid.spacing() : 0;
+    textile.faces = std::make_shared<const FaceMap>(build_face_map(network, spacing));
+    textile.exchange.owed_kg.assign(network.nodes(), 0);
+    textile.exchange.waiting_kg.assign(network.nodes(), 0);
+  } catch (const InputError& error) {
+    add_at(scene, error, problems, fmt::format("textiles[{}].wetting", i));
+  }
+}
+
+void add_solid(const Scene& scene, std::size_t i, World& world, std::vector<Problem>& problems) {
+  const SolidSpec& spec = scene.solids[i];
+  try {
+    SolidBody body;
+    body.name = spec.name;
+    body.shape = make_shape(spec.shape);
+    body.material.contact_angle = spec.contact_angle;
+    body.material.receding_angle = spec.receding_angle.value_or(-1);
+    body.material.friction = spec.friction;
+    body.colour = Vec3f(spec.colour);
+    world.solids.push_back(std::move(body));
+  } catch (const InputError& error) {
+    add_at(scene, error, problems, fmt::format("solids[{}].shape", i));
+  }
+}
+
+// What is in the scene, and as much again around it.
+Bounds default_domain(const World& world) {
+  Bounds all;
+  for (const Source& source : world.sources) all.include(bounds_of(source));
+  for (const Textile& textile : world.textiles) all.include(bounds_of_sheet(textile));
+  for (const SolidBody& solid : world.solids) {
+    if (const Plane* plane = std::get_if<Plane>(&solid.shape)) all.include(plane->point);
+    else all.include(bounds_of(solid.shape));
+  }
+  const Vec3 size = all.size();
+  all.grow(std::max({0.02, size.x, size.y, size.z}));
+  return all;
+}
+
+}  // namespace
+
+double machine_memory() {
+  const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
+  return pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 0;
+}
+
+LiquidKind liquid_of(const Scene& scene, const Library& library, std::vector<Problem>& problems) {
+  const LiquidKindSpec& spec = scene.liquid.kind;
+  LiquidKind kind;
+  kind.name = spec.name;
+  const bool own = spec.density && spec.viscosity && spec.surface_tension;
+  if (const LiquidRecord* record = find_liquid(library, spec.name)) {
+    kind = record->kind;
+  } else if (!own) {
+    std::vector<std::string> names;
+    for (const LiquidRecord& r : library.liquids) names.push_back(r.kind.name);
+    const std::string near = nearest_word(spec.name, names);
+    const bool named = scene.places.contains("liquid.kind.name");
+    problems.push_back(scene_problem(
+        scene, named ? "liquid.kind.name" : "liquid.kind",
+        fmt::format("there is no liquid '{}'{}. Known: {}; or give density, viscosity and surface_tension", spec.name,
+                    near.empty() ? "" : fmt::format("; did you mean '{}'?", near), fmt::join(names, ", "))));
+    return kind;
+  }
+  kind.density = spec.density.value_or(kind.density);
+  kind.viscosity = spec.viscosity.value_or(kind.viscosity);
+  kind.surface_tension = spec.surface_tension.value_or(kind.surface_tension);
+  return kind;
+}
+
+std::vector<Source> sources_of(const Scene& scene) {
+  std::vector<Source> sources;
+  const auto add_drop = [&](const DropSpec& drop, const std::string& fallback) -> Source& {
+    Source& s = sources.emplace_back();
+    s.name = drop.name.empty() ? fallback : drop.name;
+    s.form = SourceForm::drop;
+    s.centre = drop.centre, s.volume = drop.volume, s.velocity = drop.velocity, s.start = drop.start;
+    return s;
+  };
+  const LiquidSpec& liquid = scene.liquid;
+  for (std::size_t i = 0; i < liquid.drops.size(); ++i) add_drop(liquid.drops[i], fmt::format("drop {}", i + 1));
+  for (std::size_t i = 0; i < liquid.boxes.size(); ++i) {
+    const LiquidBoxSpec& box = liquid.boxes[i];
+    Source& s = sources.emplace_back();
+    s.name = box.name.empty() ? fmt::format("box {}", i + 1) : box.name;
+    s.form = SourceForm::box;
+    s.centre = box.centre, s.size = box.size, s.velocity = box.velocity, s.start = box.start;
+  }
+  for (std::size_t i = 0; i < liquid.droppers.size(); ++i) {
+    const DropperSpec& dropper = liquid.droppers[i];
+    Source& s = add_drop(dropper.drop, fmt::format("dropper {}", i + 1));
+    s.interval = dropper.interval, s.count = dropper.count;
+  }
+  return sources;
+}
+
+SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind) {
+  SceneEstimate e;
+  e.capillary_step = std::numeric_limits<Real>::infinity();
+  const Real particle_mass = scene.liquid.particle_mass.value_or(0);
+  if (particle_mass > 0) {
+    Real volume = 0;
+    for (const Source& s : sources_of(scene))
+      volume += s.count * (s.form == SourceForm::box ? s.size.x * s.size.y * s.size.z : s.volume);
+    e.particles = volume * kind.density / particle_mass;
+    e.spacing = std::cbrt(particle_mass / kind.density);
+    if (kind.surface_tension > 0)
+      e.capillary_step = scene.liquid.solver.capillary_factor *
+                         std::sqrt(kind.density * std::pow(e.spacing, 3) / (2 * pi * kind.surface_tension));
+  }
+  double fabric_bytes = 0, points = 0;
+  for (const TextileSpec& textile : scene.textiles) {
+    const FabricEstimate f = estimate_fabric(textile.fabric);
+    e.segments += f.segments, e.pores += f.pores, e.edges += f.edges;
+    points += f.points, fabric_bytes += f.bytes;
+  }
+  e.memory_bytes = base_bytes + e.particles * bytes_per_particle + fabric_bytes +
+                   (e.segments + e.pores) * bytes_per_node + e.edges * bytes_per_edge;
+  e.outputs = std::ceil(scene.duration / output_interval(scene)) + 1;
+  e.disk_bytes = e.outputs * ((scene.output.particles ? e.particles * disk_per_particle : 0) +
+                              (scene.output.textiles ? points * disk_per_point + e.pores * disk_per_pore : 0) +
+                              (scene.output.pictures ? disk_per_picture : 0));
+  return e;
+}
+
+World build_world(const Scene& scene, const Library& library) {
+  std::vector<Problem> problems;
+  World world;
+  world.liquid.kind = liquid_of(scene, library, problems);
+  world.liquid.particle_mass = scene.liquid.particle_mass.value_or(0);
+  // Only estimates so far: nothing is allocated for a scene that the machine cannot hold.
+  check_limits(scene, estimate_scene(scene, world.liquid.kind), problems);
+  if (!problems.empty()) throw InputError(std::move(problems));
+
+  world.seed = scene.seed;
+  world.gravity = scene.gravity;
+  world.air = {scene.air.temperature, scene.air.humidity, scene.air.mass_transfer};
+  world.liquid_params = scene.liquid.solver;
+  world.sources = sources_of(scene);
+  for (std::size_t i = 0; i < scene.textiles.size(); ++i) add_textile(scene, i, library, world, problems);
+  for (std::size_t i = 0; i < scene.solids.size(); ++i) add_solid(scene, i, world, problems);
+  const bool all_built = world.textiles.size() == scene.textiles.size() && world.solids.size() == scene.solids.size();
+  if (all_built) {
+    world.domain = default_domain(world);
+    if (scene.domain.lower) world.domain.lower = *scene.domain.lower;
+    if (scene.domain.upper) world.domain.upper = *scene.domain.upper;
+    check_placements(scene, world, problems);
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  for (std::size_t i = 0; i < world.textiles.size(); ++i) add_wetting(scene, i, world, problems);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  for (const Textile& textile : world.textiles)
+    world.ledger.initial_kg += total_sorbed_kg(*textile.model, textile.contents) +
+                               total_yarn_kg(*textile.model, textile.contents) +
+                               total_pore_kg(*textile.model, textile.contents);
+  return world;
+}
+
+}  // namespace imbibe

@@ -1,0 +1,40 @@
+// From a scene to the World that runs. Everything that can be wrong with a scene beyond single keys is found here,
+// with the place of the key that causes it, and thrown once: unknown liquid or fibre, a drop inside cloth or solid,
+// overlapping drops, more particles, memory or disk than the limits or the machine allow (estimated before anything
+// is allocated). Tested in tests/scene/builder_test.cpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imbibe/scene/library.h"
+#include "imbibe/scene/scene.h"
+#include "imbibe/sim/world.h"
+
+namespace imbibe {
+
+// What a scene will need, from its counts alone.
+struct SceneEstimate {
+  double particles = 0;          // at most, all drops of all droppers
+  double segments = 0, pores = 0, edges = 0;
+  double memory_bytes = 0;
+  double disk_bytes = 0;         // of the run folder
+  double outputs = 0;
+  Real spacing = 0;              // m, of the particles
+  Real capillary_step = 0;       // s, bound of the SPH step by capillary waves; infinity without liquid
+};
+
+// The liquid that `liquid.kind` means. Problems are appended.
+LiquidKind liquid_of(const Scene& scene, const Library& library, std::vector<Problem>& problems);
+
+SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind);
+
+// bytes; 0 where the system does not say.
+double machine_memory();
+
+// The drops, boxes and droppers of the scene as sources.
+std::vector<Source> sources_of(const Scene& scene);
+
+World build_world(const Scene& scene, const Library& library);
+
+}  // namespace imbibe
