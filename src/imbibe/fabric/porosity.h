@@ -29,7 +29,6 @@ struct FamilyNumbers {
   Real areal_mass = 0;          // kg/m2
   Real volume_per_area = 0;     // m3/m2, of the yarn tubes
   Real capillary_volume_per_area = 0;  // m3/m2, between the fibres inside the yarns
-  Real fibre_mass_per_area = 0; // kg/m2, the same as areal_mass
 };
 
 struct FabricNumbers {
