@@ -49,8 +49,8 @@ void describe(V& v, MeshTransform& t) {
 template <class V>
 void describe(V& v, ShapeSpec& s) {
   v.choice("kind", s.kind,
-           {{"plane", ShapeKind::plane}, {"box", ShapeKind::box}, {"sphere", ShapeKind::sphere},
-            {"cylinder", ShapeKind::cylinder}, {"cone", ShapeKind::cone}, {"mesh", ShapeKind::mesh}},
+           Choices<ShapeKind>{{"plane", ShapeKind::plane}, {"box", ShapeKind::box}, {"sphere", ShapeKind::sphere},
+                              {"cylinder", ShapeKind::cylinder}, {"cone", ShapeKind::cone}, {"mesh", ShapeKind::mesh}},
            "form of the solid");
   v.value("point", s.point, {.unit = "m", .shown = "mm", .help = "plane: any point on it"});
   v.value("normal", s.normal, {.unit = "1", .help = "plane: direction out of the solid; any length"});
