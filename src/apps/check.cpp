@@ -24,7 +24,7 @@ void add_check_command(CLI::App& app, CommandContext& context) {
   command->callback([options, &context] {
     const imbibe::Scene scene = imbibe::read_scene(options->scene, options->sets);
     const imbibe::Library library =
-        imbibe::read_library(imbibe::data_folders(options->scene, context.data_folders));
+        imbibe::read_library(imbibe::library_folders(options->scene, context.data_folders));
     const imbibe::World world = imbibe::build_world(scene, library);
     fmt::print("{}", options->resolved ? imbibe::write_scene(scene) : imbibe::check_report(scene, world));
   });

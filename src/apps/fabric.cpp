@@ -15,7 +15,7 @@ struct FabricOptions {
 
 void print_fabrics(const FabricOptions& options, const CommandContext& context) {
   using namespace imbibe;
-  const Library library = read_library(data_folders(options.file, context.data_folders));
+  const Library library = read_library(library_folders(options.file, context.data_folders));
   const LiquidRecord* liquid = find_liquid(library, options.liquid);
   if (liquid == nullptr) {
     std::vector<std::string> names;

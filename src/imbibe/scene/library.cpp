@@ -85,7 +85,7 @@ LiquidRecord read_liquid_file(const fs::path& file) {
   return record;
 }
 
-std::vector<fs::path> data_folders(const fs::path& scene_file, const std::vector<std::string>& program_folders) {
+std::vector<fs::path> library_folders(const fs::path& scene_file, const std::vector<std::string>& program_folders) {
   std::vector<fs::path> folders;
   const auto add = [&](const fs::path& folder) {
     std::error_code ignored;

@@ -42,7 +42,7 @@ LiquidRecord read_liquid_file(const std::filesystem::path& file);
 // The folders to search for a scene, lowest rank first: those of the program (installed or source tree), the one that
 // the environment variable IMBIBE_DATA_DIR names, then every folder above the scene file that holds fibres/ or
 // liquids/, the nearest last.
-std::vector<std::filesystem::path> data_folders(const std::filesystem::path& scene_file,
+std::vector<std::filesystem::path> library_folders(const std::filesystem::path& scene_file,
                                                 const std::vector<std::string>& program_folders);
 
 // Reads all fibres and liquids of the folders. Throws InputError with the problems of all files, or when there is no

@@ -230,7 +230,7 @@ void describe(V& v, OutputSpec& p) {
   v.value("every", p.every,
           {.unit = "s", .min = 0, .above_min = true, .help = "simulated time between outputs; default: duration / 50"});
   v.value("checkpoint_every", p.checkpoint_every,
-          {.unit = "s", .min = 1, .help = "wall-clock time between checkpoints; default: 10 min"});
+          {.unit = "s", .min = 1, .help = "wall-clock time between checkpoints; default: 60 s"});
   v.value("pictures", p.pictures, {.help = "a picture at every output, and the film"});
   v.value("particles", p.particles, {.help = "liquid_*.vtp files"});
   v.value("textiles", p.textiles, {.help = "textile_*.vtp files"});
