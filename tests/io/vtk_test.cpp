@@ -45,7 +45,8 @@ for a in range(pd.GetNumberOfArrays()):
     array = pd.GetArray(a)
     m = array.GetNumberOfComponents()
     line('type_' + array.GetName(), [array.GetDataType()])
-    line('array_' + array.GetName(), [array.GetComponent(i, c) for i in range(array.GetNumberOfTuples()) for c in range(m)])
+    line('array_' + array.GetName(),
+         [array.GetComponent(i, c) for i in range(array.GetNumberOfTuples()) for c in range(m)])
 line('time', [data.GetFieldData().GetArray('TimeValue').GetComponent(0, 0)])
 )";
 

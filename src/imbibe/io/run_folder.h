@@ -1,6 +1,8 @@
 // The folder of a run: everything it leaves behind, readable at any moment (docs/run_folder.md).
-//   scene.yaml run.json log.txt series.csv liquid.pvd liquid_000000.vtp ... textile_<name>.pvd textile_<name>_000000.vtp
-//   ... textile_<name>_pores.pvd ... checkpoint_*.h5 pictures/ film.mp4 report.html
+//   scene.yaml run.json log.txt series.csv checkpoint_*.h5 pictures/ film.mp4 report.html
+//   liquid.pvd liquid_000000.vtp ...  textile_<name>.pvd ...  textile_<name>_pores.pvd ...
+// Nothing is half written under its own name; the row of series.csv comes last, so a time that has a row has its files.
+// What the disk refuses is an OutputError, and what was written before stays.
 // Tested in tests/io/run_folder_test.cpp.
 #pragma once
 
@@ -20,8 +22,8 @@ namespace imbibe {
 
 enum class ExistingFolder {
   refuse,     // a folder that is not empty is an InputError
-  resume,     // go on in it: rows and files later than the world's time are removed
-  overwrite,  // remove what an earlier run left there (only names that a run writes)
+  resume,     // go on in it: rows and entries later than the world's time are removed
+  overwrite,  // remove what an earlier run left there, and only that; not a run's folder: an InputError
 };
 
 struct RunSetup {
@@ -47,8 +49,9 @@ class RunFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  // One output time: a row of series.csv, the .vtp files and their .pvd. Does nothing if this time was written
-  // already (the first one after a resume).
+  // One output time: the .vtp files, their .pvd, a row of series.csv, run.json. The state a run resumes from is left
+  // out when it was written already or lies between two output times: a resumed run leaves the same files as one that
+  // was never stopped.
   void write_output(const World& world, const StepReport& last_step);
 
   void write_checkpoint(const World& world);
@@ -65,27 +68,36 @@ class RunFolder {
   int outputs() const { return outputs_; }
 
  private:
+  struct Collection {  // one .pvd and its files
+    std::string stem;
+    std::vector<PvdEntry> entries;
+  };
+
   void prepare(ExistingFolder existing, const World& world);
+  void continue_run(const World& world);
+  void name_collections(const World& world);
+  void write_frame(Collection& collection, const PolyData& data, const World& world);
   void write_run_json(const World& world, RunStatus status, const std::string& reason);
-  void write_frame(const std::string& stem, const PolyData& data, const VtkTime& when, std::vector<PvdEntry>& entries);
+  Real wall_s() const;
 
   std::filesystem::path folder_;
   RunSetup setup_;
   SeriesFile series_;
   AppendFile log_;
   std::vector<std::string> notes_;
-  std::vector<std::pair<std::string, std::vector<PvdEntry>>> collections_;  // stem -> entries
+  std::vector<Collection> collections_;  // liquid, then yarns and pores of every textile
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
-  Real earlier_wall_s_ = 0;  // of the runs before a resume
   std::string started_at_;
+  Real earlier_wall_s_ = 0;  // of the runs before a resume
   int outputs_ = 0;
-  std::optional<Real> last_output_time_;
+  std::optional<Real> skip_until_;  // s, outputs up to this time are there already
 };
 
 // The data of the .vtp files.
 PolyData liquid_poly_data(const Liquid& liquid);
-PolyData textile_poly_data(const Textile& textile);
-PolyData pore_poly_data(const Textile& textile);
+// `saturations`: node_saturations(). Every point of a yarn's line carries the values of the segment it lies on.
+PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& saturations);
+PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturations);
 
 // `name` with everything that is not a letter, digit, '-' or '_' replaced by '_'.
 std::string file_name_part(const std::string& name);

@@ -114,7 +114,9 @@ const std::vector<std::string>& series_columns() {
 std::string series_line(const SeriesRow& row) {
   std::string line;
   // fmt's "{}" is the shortest text that reads back to the same bits.
-  visit_columns(row, [&](const char*, const auto& value) { line += fmt::format("{}{}", line.empty() ? "" : ",", value); });
+  visit_columns(row, [&](const char*, const auto& value) {
+    line += fmt::format("{}{}", line.empty() ? "" : ",", value);
+  });
   return line;
 }
 
@@ -159,8 +161,9 @@ SeriesTable read_series(const std::filesystem::path& path) {
       continue;
     }
     if (parts.size() != table.columns.size()) {
-      throw InputError({Problem{path.string(), number, 1, "",
-                                fmt::format("{} values where the header names {}", parts.size(), table.columns.size())}});
+      throw InputError({Problem{
+          path.string(), number, 1, "",
+          fmt::format("{} values where the header names {}", parts.size(), table.columns.size())}});
     }
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const std::string word(parts[i]);

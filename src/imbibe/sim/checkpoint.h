@@ -21,7 +21,8 @@ inline constexpr int checkpoint_version = 1;
 void write_checkpoint(const std::filesystem::path& path, const World& world);
 
 // Replaces the state of `built`, which must be of the same scene: as many textiles of the same size, as many sources,
-// the same particle mass. Throws InputError with every mismatch, or when the file is damaged; `built` is then unchanged.
+// the same particle mass. Throws InputError with every mismatch, or when the file is damaged; `built` is then
+// unchanged.
 void read_checkpoint(const std::filesystem::path& path, World& built);
 
 // checkpoint_<step>.h5 in `folder`, oldest first.

@@ -1,0 +1,32 @@
+#include "imbibe/io/machine.h"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <thread>
+
+namespace imbibe {
+
+Machine this_machine() {
+  Machine machine;
+  machine.processor = "unknown";
+  std::ifstream cpus("/proc/cpuinfo");
+  for (std::string line; std::getline(cpus, line);) {
+    if (!line.starts_with("model name")) continue;
+    const std::size_t at = line.find(": ");
+    if (at != std::string::npos) machine.processor = line.substr(at + 2);
+    break;
+  }
+  machine.cores = static_cast<int>(std::thread::hardware_concurrency());
+  machine.memory_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                         static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
+  utsname system{};
+  if (::uname(&system) == 0) machine.system = std::string(system.sysname) + " " + system.release + " " + system.machine;
+#ifdef __VERSION__
+  machine.compiler = __VERSION__;
+#endif
+  return machine;
+}
+
+}  // namespace imbibe

@@ -1,0 +1,84 @@
+// What of a World goes into its .vtp files.
+#include <algorithm>
+
+#include "imbibe/core/error.h"
+#include "imbibe/io/run_folder.h"
+
+namespace imbibe {
+
+PolyData liquid_poly_data(const Liquid& liquid) {
+  const Particles& particles = liquid.particles;
+  const std::size_t count = particles.size();
+  PolyData data;
+  data.points.reserve(count);
+  std::vector<float> velocity;
+  velocity.reserve(3 * count);
+  std::vector<std::int32_t> id(count), kind(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Float4 &x = particles.position[i], &v = particles.velocity[i];
+    data.points.push_back({x.x, x.y, x.z});
+    velocity.insert(velocity.end(), {v.x, v.y, v.z});
+    id[i] = static_cast<std::int32_t>(particles.id[i]);
+    kind[i] = static_cast<std::int32_t>(particles.kind[i]);
+  }
+  data.add("velocity", std::move(velocity), 3);
+  data.add("density", particles.density);
+  data.add("mass", std::vector<float>(count, static_cast<float>(liquid.particle_mass)));
+  data.add("pressure", particles.pressure);
+  data.add("class", std::move(kind));  // 0 inside, 1 at the vapour, 2 at a solid
+  data.add("id", std::move(id));
+  return data;
+}
+
+PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& saturations) {
+  const YarnNetwork& network = textile.fabric->network;
+  const Contents& contents = textile.contents;
+  const std::size_t count = network.points.size();
+  PolyData data;
+  data.points.reserve(count);
+  for (const Vec3& p : network.points) data.points.push_back(Vec3f(textile.placement.to_world(p)));
+  std::vector<float> saturation, sorbed, liquid, regain;
+  std::vector<std::int32_t> yarn, family;
+  for (std::vector<float>* values : {&saturation, &sorbed, &liquid, &regain}) values->reserve(count);
+  yarn.reserve(count), family.reserve(count);
+  const auto per_segment = static_cast<std::size_t>(network.points_per_segment);
+  for (std::size_t y = 0; y < network.yarn_family.size(); ++y) {
+    const std::size_t first = network.yarn_first_segment[y], segments = network.yarn_first_segment[y + 1] - first;
+    data.line_start.push_back(static_cast<std::int32_t>(network.yarn_first_point[y]));
+    const std::size_t points = network.yarn_first_point[y + 1] - network.yarn_first_point[y];
+    for (std::size_t i = 0; i < points; ++i) {
+      const std::size_t s = first + std::min(i / per_segment, segments - 1);  // the last point ends the last segment
+      saturation.push_back(static_cast<float>(saturations[s]));
+      sorbed.push_back(static_cast<float>(contents.sorbed_kg[s]));
+      liquid.push_back(static_cast<float>(contents.liquid_kg[s]));
+      regain.push_back(static_cast<float>(node_regain(*textile.model, contents, s)));
+      yarn.push_back(static_cast<std::int32_t>(y));
+      family.push_back(static_cast<std::int32_t>(network.yarn_family[y]));
+    }
+  }
+  if (!data.line_start.empty()) data.line_start.push_back(static_cast<std::int32_t>(count));
+  data.add("saturation", std::move(saturation));
+  data.add("sorbed_kg", std::move(sorbed));
+  data.add("yarn_kg", std::move(liquid));
+  data.add("regain", std::move(regain));
+  data.add("yarn", std::move(yarn));
+  data.add("family", std::move(family));
+  return data;
+}
+
+PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturations) {
+  const YarnNetwork& network = textile.fabric->network;
+  PolyData data;
+  std::vector<float> saturation, liquid;
+  for (std::size_t p = 0; p < network.pores(); ++p) {
+    const std::size_t node = network.segments() + p;
+    data.points.push_back(Vec3f(textile.placement.to_world(network.pore_centre[p])));
+    saturation.push_back(static_cast<float>(saturations[node]));
+    liquid.push_back(static_cast<float>(textile.contents.liquid_kg[node]));
+  }
+  data.add("saturation", std::move(saturation));
+  data.add("pore_kg", std::move(liquid));
+  return data;
+}
+
+}  // namespace imbibe
