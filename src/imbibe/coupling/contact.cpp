@@ -10,102 +10,7 @@
 namespace imbibe {
 namespace {
 
-constexpr std::size_t fan = 8;        // boxes under one box of a yarn's tree
 constexpr Real relative_slack = 1e-4;  // of yarn radius + reach: float positions cannot tell touching any better
-
-// --- a yarn's boxes -------------------------------------------------------------------------------------------------
-
-std::size_t boxes_above(std::size_t segments) {
-  std::size_t total = segments;
-  for (std::size_t level = segments; level > 1;) total += level = (level + fan - 1) / fan;
-  return total;
-}
-
-SmallBox outward(const Bounds& b) {
-  const auto down = [](Real v) { return std::nextafterf(static_cast<float>(v), -std::numeric_limits<float>::infinity()); };
-  const auto up = [](Real v) { return std::nextafterf(static_cast<float>(v), std::numeric_limits<float>::infinity()); };
-  return {{down(b.lower.x), down(b.lower.y), down(b.lower.z)}, {up(b.upper.x), up(b.upper.y), up(b.upper.z)}};
-}
-
-Bounds wide(const SmallBox& b) { return {Vec3(b.lower), Vec3(b.upper)}; }
-
-SmallBox joined(std::span<const SmallBox> boxes) {
-  SmallBox all = boxes[0];
-  for (const SmallBox& b : boxes.subspan(1)) {
-    all.lower = {std::min(all.lower.x, b.lower.x), std::min(all.lower.y, b.lower.y), std::min(all.lower.z, b.lower.z)};
-    all.upper = {std::max(all.upper.x, b.upper.x), std::max(all.upper.y, b.upper.y), std::max(all.upper.z, b.upper.z)};
-  }
-  return all;
-}
-
-Real radius_of_yarn(const YarnNetwork& network, Index yarn) {
-  return network.yarn_types[network.yarn_type[yarn]].radius;
-}
-
-// The centre-line points of a segment: points_per_segment + 1 of them.
-std::span<const Vec3> points_of_segment(const YarnNetwork& network, Index yarn, Index segment) {
-  const auto steps = static_cast<std::size_t>(network.points_per_segment);
-  const std::size_t first = network.yarn_first_point[yarn] + steps * (segment - network.yarn_first_segment[yarn]);
-  return {network.points.data() + first, steps + 1};
-}
-
-void fit_yarn(YarnContactIndex& index, const YarnNetwork& network, Index yarn) {
-  const Index first = network.yarn_first_segment[yarn], last = network.yarn_first_segment[yarn + 1];
-  const Real radius = radius_of_yarn(network, yarn);
-  SmallBox* box = index.boxes.data() + index.yarn_first_box[yarn];
-  for (Index s = first; s < last; ++s) {
-    Bounds bounds;
-    for (const Vec3& p : points_of_segment(network, yarn, s)) bounds.include(p);
-    bounds.grow(radius);
-    *box++ = outward(bounds);
-  }
-  for (std::size_t count = last - first; count > 1;) {
-    const SmallBox* below = box - count;
-    const std::size_t parents = (count + fan - 1) / fan;
-    for (std::size_t p = 0; p < parents; ++p) {
-      *box++ = joined({below + p * fan, std::min(fan, count - p * fan)});
-    }
-    count = parents;
-  }
-}
-
-// Calls visit(segment) for the segments of a yarn whose boxes pass; test(box) returns the path's entry time or
-// infinity, boxes entered after `latest` are passed over. Earliest boxes first.
-template <class Test, class Visit>
-void visit_segments(const YarnContactIndex& index, const YarnNetwork& network, Index yarn, const Real& latest,
-                    std::uint64_t& tested, Test&& test, Visit&& visit) {
-  struct Entry { std::size_t level, place; Real time; };
-  std::array<std::size_t, 16> level_begin{}, level_size{};
-  std::size_t levels = 0;
-  std::size_t begin = index.yarn_first_box[yarn];
-  for (std::size_t n = network.yarn_first_segment[yarn + 1] - network.yarn_first_segment[yarn];;) {
-    level_begin[levels] = begin, level_size[levels++] = n;
-    if (n <= 1) break;
-    begin += n;
-    n = (n + fan - 1) / fan;
-  }
-  std::array<Entry, 16 * fan> stack;
-  std::size_t depth = 0;
-  stack[depth++] = {levels - 1, 0, 0};  // the yarn's own box was tested by the caller
-  while (depth > 0) {
-    const Entry entry = stack[--depth];
-    if (entry.time > latest) continue;
-    if (entry.level == 0) {
-      visit(static_cast<Index>(network.yarn_first_segment[yarn] + entry.place));
-      continue;
-    }
-    const std::size_t below = entry.level - 1, base = depth;
-    const std::size_t end = std::min((entry.place + 1) * fan, level_size[below]);
-    for (std::size_t child = entry.place * fan; child < end; ++child) {
-      ++tested;
-      const Real time = test(wide(index.boxes[level_begin[below] + child]));
-      if (time > latest) continue;
-      std::size_t at = depth++;  // insertion: the latest lies deepest in the stack
-      for (; at > base && stack[at - 1].time < time; --at) stack[at] = stack[at - 1];
-      stack[at] = {below, child, time};
-    }
-  }
-}
 
 // --- the two forms of a yarn's surface -------------------------------------------------------------------------------
 
@@ -120,10 +25,6 @@ struct Path {
   Vec3 from, step;
   Vec3 at(Real t) const { return from + t * step; }
 };
-
-Vec3 plane_normal_of(const YarnNetwork& network, Index yarn) {
-  return network.yarn_family[yarn] == Family::weft ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
-}
 
 // A unit normal where rounding leaves none: against the path, or else up.
 Vec3 fallback_normal(const Path& path) {
@@ -140,60 +41,6 @@ void nearest_round(const YarnNetwork& network, Index yarn, Index segment, const 
   if (distance >= gap.distance) return;
   const Vec3 normal = away > 1e-9 * radius ? (path.from - near.point) / away : fallback_normal(path);
   gap = {distance, near.point + radius * normal, normal, segment};
-}
-
-// The triangles between the rings of two neighbouring centre-line points.
-template <class Visit>
-void visit_tube_triangles(const std::array<Vec3, tube_sides>& ring, const std::array<Vec3, tube_sides>& next,
-                          Visit&& visit) {
-  for (std::size_t k = 0; k < tube_sides; ++k) {
-    const std::size_t l = (k + 1) % tube_sides;
-    visit(ring[k], ring[l], next[l]);
-    visit(ring[k], next[l], next[k]);
-  }
-}
-
-Vec3 ring_centre(const std::array<Vec3, tube_sides>& ring) {
-  Vec3 sum{};
-  for (const Vec3& corner : ring) sum += corner;
-  return sum / static_cast<Real>(tube_sides);
-}
-
-// The two ends of a yarn are closed by a fan.
-template <class Visit>
-void visit_cap(const std::array<Vec3, tube_sides>& ring, bool at_start, Visit&& visit) {
-  const Vec3 centre = ring_centre(ring);
-  for (std::size_t k = 0; k < tube_sides; ++k) {
-    const Vec3 &a = ring[k], &b = ring[(k + 1) % tube_sides];
-    at_start ? visit(centre, b, a) : visit(centre, a, b);
-  }
-}
-
-// Calls visit(a, b, c) for the triangles of the pieces of a segment's tube whose boxes pass.
-template <class Test, class Visit>
-void visit_segment_triangles(const YarnNetwork& network, Index yarn, Index segment, Test&& test, Visit&& visit) {
-  const Real radius = radius_of_yarn(network, yarn);
-  const Index first = network.yarn_first_point[yarn], last = network.yarn_first_point[yarn + 1] - 1;
-  const auto points = points_of_segment(network, yarn, segment);
-  const Index begin = static_cast<Index>(points.data() - network.points.data());
-  std::array<Vec3, tube_sides> ring, next;
-  bool have_ring = false;
-  for (Index i = begin; i + 1 < begin + points.size(); ++i) {
-    Bounds bounds;
-    bounds.include(network.points[i]);
-    bounds.include(network.points[i + 1]);
-    bounds.grow(radius);
-    if (!test(bounds)) {
-      have_ring = false;
-      continue;
-    }
-    if (!have_ring) ring = tube_ring(network, yarn, i);
-    next = tube_ring(network, yarn, i + 1);
-    if (i == first) visit_cap(ring, true, visit);
-    visit_tube_triangles(ring, next, visit);
-    if (i + 1 == last) visit_cap(next, false, visit);
-    ring = next, have_ring = true;
-  }
 }
 
 void nearest_triangles(const YarnNetwork& network, Index yarn, Index segment, const Path& path, Real reach, Gap& gap,
@@ -332,34 +179,6 @@ ContactCounts& ContactCounts::operator+=(const ContactCounts& o) {
   return *this;
 }
 
-YarnContactIndex build_contact_index(const YarnNetwork& network) {
-  YarnContactIndex index;
-  const std::size_t yarns = network.yarn_family.size();
-  index.yarn_first_box.resize(yarns + 1);
-  for (Index y = 0; y < yarns; ++y) {
-    const std::size_t segments = network.yarn_first_segment[y + 1] - network.yarn_first_segment[y];
-    IMBIBE_ASSERT(segments > 0);
-    index.yarn_first_box[y + 1] = index.yarn_first_box[y] + boxes_above(segments);
-    index.members[static_cast<std::size_t>(network.yarn_family[y])].push_back(y);
-  }
-  index.boxes.resize(index.yarn_first_box[yarns]);
-  refit(index, network);
-  return index;
-}
-
-void refit(YarnContactIndex& index, const YarnNetwork& network) {
-  const std::size_t yarns = network.yarn_family.size();
-  parallel_for(yarns, [&](std::size_t y) { fit_yarn(index, network, static_cast<Index>(y)); }, 16);
-  index.textile = {};
-  for (std::size_t f = 0; f < 2; ++f) {
-    std::vector<Bounds> boxes;
-    for (const Index y : index.members[f]) boxes.push_back(wide(index.boxes[index.yarn_first_box[y + 1] - 1]));
-    if (index.yarns[f].order.size() == boxes.size()) refit(index.yarns[f], boxes);
-    else index.yarns[f] = build_hierarchy(boxes, 1);
-    if (!boxes.empty()) index.textile.include(index.yarns[f].nodes[0].bounds);
-  }
-}
-
 std::optional<YarnHit> first_hit(const YarnContactIndex& index, const YarnNetwork& network, const Vec3& p0,
                                  const Vec3& p1, Real particle_radius, const ContactParams& params,
                                  ContactCounts* counts) {
@@ -412,49 +231,5 @@ void find_hits(const YarnContactIndex& index, const YarnNetwork& network, const 
     if (counts) *counts += scratch.counts[t];
   }
 }
-
-std::array<Vec3, tube_sides> tube_ring(const YarnNetwork& network, Index yarn, Index point) {
-  const Index first = network.yarn_first_point[yarn], last = network.yarn_first_point[yarn + 1];
-  const std::span<const Vec3> points(network.points.data() + first, last - first);
-  const CrossFrame frame = frame_beside(tangent_at(points, point - first), plane_normal_of(network, yarn));
-  const Real radius = radius_of_yarn(network, yarn);
-  std::array<Vec3, tube_sides> ring;
-  for (int k = 0; k < tube_sides; ++k) {
-    const Real angle = 2 * pi * k / tube_sides;
-    ring[static_cast<std::size_t>(k)] =
-        network.points[point] + radius * (std::cos(angle) * frame.side + std::sin(angle) * frame.up);
-  }
-  return ring;
-}
-
-Real mesh_deviation(const YarnNetwork& network) {
-  Real largest = 0;
-  for (Index y = 0; y < network.yarn_family.size(); ++y) {
-    // Between corners a chord lies inside the circle. At a bend of the centre line the ring stands across the mean
-    // direction, so it is narrower by the cosine of half the bend seen along either piece.
-    Real least_cosine = 1;
-    for (Index i = network.yarn_first_point[y] + 1; i + 1 < network.yarn_first_point[y + 1]; ++i) {
-      const Vec3 before = network.points[i] - network.points[i - 1], after = network.points[i + 1] - network.points[i];
-      least_cosine = std::min(least_cosine, dot(normalized(before), normalized(after)));
-    }
-    const Real narrower = std::sqrt((1 + least_cosine) / 2) * std::cos(pi / tube_sides);
-    largest = std::max(largest, radius_of_yarn(network, y) * (1 - narrower));
-  }
-  return largest;
-}
-
-Bounce bounce(const Vec3& velocity, const Vec3& normal, Real mass, Real restitution, Real friction) {
-  const Real approach = -dot(velocity, normal);
-  if (approach <= 0) return {velocity, {}};
-  const Real normal_change = (1 + restitution) * approach;
-  const Vec3 tangential = velocity + approach * normal;
-  const Real slip = norm(tangential);
-  const Real taken = std::min(friction * normal_change, slip);  // friction stops, it never turns round
-  Vec3 after = velocity + normal_change * normal;
-  if (slip > 0) after -= (taken / slip) * tangential;
-  return {after, mass * (velocity - after)};
-}
-
-Bounce rest(const Vec3& velocity, Real mass) { return {{}, mass * velocity}; }
 
 }  // namespace imbibe

@@ -21,7 +21,6 @@
 // Tested in tests/coupling/contact_test.cpp.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -29,9 +28,10 @@
 
 #include "imbibe/core/parameter.h"
 #include "imbibe/core/types.h"
+#include "imbibe/coupling/bounce.h"
+#include "imbibe/coupling/contact_index.h"
+#include "imbibe/coupling/yarn_tube.h"
 #include "imbibe/fabric/network.h"
-#include "imbibe/geometry/bounds.h"
-#include "imbibe/geometry/hierarchy.h"
 #include "imbibe/liquid/particles.h"
 
 namespace imbibe {
@@ -54,27 +54,6 @@ void describe(V& v, ContactParams& p) {
   v.value("restitution", p.restitution, {.min = 0, .max = 1, .help = "share of the normal speed kept by a bounce"});
   v.value("friction", p.friction, {.min = 0, .max = 10, .help = "Coulomb friction of a bounce"});
 }
-
-// --- index ------------------------------------------------------------------------------------------------------------
-
-// A box in single precision, rounded outwards: half the memory, never smaller than what it holds.
-struct SmallBox {
-  Vec3f lower, upper;
-};
-
-struct YarnContactIndex {
-  Bounds textile;
-  std::array<BoxHierarchy, 2> yarns;          // by Family: groups of neighbouring yarns above the yarns
-  std::array<std::vector<Index>, 2> members;  // by Family: the yarns, as numbered in the hierarchy
-  // Each yarn's boxes: its segments', then those of 8 segments, of 64, ... up to one for the whole yarn.
-  std::vector<std::size_t> yarn_first_box;    // size yarns + 1
-  std::vector<SmallBox> boxes;
-};
-
-YarnContactIndex build_contact_index(const YarnNetwork& network);
-
-// New boxes after the network's points have moved.
-void refit(YarnContactIndex& index, const YarnNetwork& network);
 
 // --- queries ----------------------------------------------------------------------------------------------------------
 
@@ -117,29 +96,5 @@ void find_hits(const YarnContactIndex& index, const YarnNetwork& network, const 
                std::span<const Float4> position, std::span<const Float4> velocity, Real step_s, Real particle_radius,
                const ContactParams& params, std::vector<ParticleHit>& hits, ContactScratch& scratch,
                ContactCounts* counts = nullptr);
-
-// --- the tube of triangles ---------------------------------------------------------------------------------------------
-
-inline constexpr int tube_sides = 16;
-
-// How far the triangles of any yarn lie inside the round yarn at most, m.
-Real mesh_deviation(const YarnNetwork& network);
-
-// The corners of the ring at centre-line point i of a yarn, counter-clockwise seen against the yarn's direction.
-std::array<Vec3, tube_sides> tube_ring(const YarnNetwork& network, Index yarn, Index point);
-
-// --- what a contact does ------------------------------------------------------------------------------------------------
-
-struct Bounce {
-  Vec3 velocity{};            // m/s, of the particle afterwards
-  Vec3 impulse_on_textile{};  // N s, exactly opposite to the particle's change of momentum
-};
-
-//   v' = v - (1 + e)(v.n) n - min(mu (1 + e)|v.n|, |v_t|) v_t / |v_t|,  v_t = v - (v.n) n
-// e = 1, mu = 0 is the specular bounce that keeps the speed (seed A). A particle that moves away is left alone.
-Bounce bounce(const Vec3& velocity, const Vec3& normal, Real mass, Real restitution = 1, Real friction = 0);
-
-// A resting particle: friction takes all its motion relative to the yarn.
-Bounce rest(const Vec3& velocity, Real mass);
 
 }  // namespace imbibe
