@@ -83,7 +83,7 @@ class RunSession {
     if (arguments.until > 0) scene_.duration = arguments.until;
     if (!arguments.output.empty()) folder_path_ = arguments.output;
     if (folder_path_.empty()) folder_path_ = free_run_folder(scene_file_);
-    world_ = build_world(scene_, Library(library_folders(scene_file_, context.data_folders)));
+    world_ = build_world(scene_, read_library(library_folders(scene_file_, context.data_folders)));
     if (arguments.resume) resume();
     RunSetup setup;
     setup.command = context.command_line;

@@ -66,6 +66,7 @@ void visit_state(Visitor& v, AnyWorld& world) {
     v.array("reached_saturation", textile.contents.reached_saturation);
     v.array("owed_kg", textile.exchange.owed_kg);
     v.array("waiting_kg", textile.exchange.waiting_kg);
+    v.value("normal_force", textile.exchange.normal_force);
     v.value("impulse", textile.exchange.impulse);
     v.value("contacts", textile.exchange.contacts);
     v.value("absorbed_particles", textile.exchange.absorbed_particles);

@@ -93,6 +93,30 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   report.liquid_wall_s = seconds_since(start);
 }
 
+// Swept contact (seed A 5.1): a particle whose predicted path of the next step enters a yarn bounces now, so nothing
+// tunnels at any speed. The slab wall of the sheet holds slow liquid off already; this is for what is too fast for it.
+void bounce_off_yarns(World& world, StepScratch& scratch, StepReport& report) {
+  Particles& p = world.liquid.particles;
+  for (Textile& textile : world.textiles) {
+    find_hits(*textile.yarn_boxes, textile.fabric->network, textile.placement, p.position, p.velocity, report.step_s, 0,
+              textile.contact, scratch.hits, scratch.contact, &report.contact);
+    for (const ParticleHit& hit : scratch.hits) {
+      Float4& v = p.velocity[hit.particle];
+      const Vec3 before(v.x, v.y, v.z);
+      const Bounce after =
+          hit.hit.resting ? rest(before, world.liquid.particle_mass)
+                          : bounce(before, hit.hit.normal, world.liquid.particle_mass, textile.contact.restitution,
+                                   textile.contact.friction);
+      v.x = static_cast<float>(after.velocity.x);
+      v.y = static_cast<float>(after.velocity.y);
+      v.z = static_cast<float>(after.velocity.z);
+      textile.exchange.impulse += after.impulse_on_textile;
+      ++textile.exchange.bounces;
+    }
+    report.hits += scratch.hits.size();
+  }
+}
+
 // Textile step of dt: supply by the liquid on the faces, the network, then whole particles die or are born.
 void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, StepReport& report, Real& next_interval) {
   Textile& textile = world.textiles[index];
@@ -215,6 +239,7 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     const Real interval = textile_interval(world, true);
     if (!world.textiles.empty()) max_step = std::min(max_step, std::max(interval - pace.since_wetting, 1e-6));
     move_liquid(world, max_step, scratch, report);
+    bounce_off_yarns(world, scratch, report);
     pace.since_wetting += report.step_s;
     if (!world.textiles.empty() && pace.since_wetting >= interval * (1 - 1e-9))
       exchange_all(world, pace.since_wetting, scratch, report);

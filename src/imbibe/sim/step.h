@@ -28,6 +28,8 @@ struct StepReport {
   Real peak_density_error = 0;       // largest of one particle
   int pressure_iterations = 0, divergence_iterations = 0;
   int wetting_iterations = 0;        // Newton iterations of all textiles
+  std::size_t hits = 0;              // particles that would have entered a yarn and bounced
+  ContactCounts contact;             // boxes and triangles tested
   std::size_t emitted = 0, absorbed = 0, released = 0, left = 0;  // particles
   bool converged = true;
   double liquid_wall_s = 0, wetting_wall_s = 0;  // wall-clock seconds spent
@@ -42,6 +44,8 @@ struct StepScratch {
   std::vector<std::vector<float>> saturation;  // per textile and node, for the face's contact angle
   std::vector<Real> taken_kg;
   std::vector<std::uint8_t> dead;
+  std::vector<ParticleHit> hits;
+  ContactScratch contact;
 };
 
 StepReport step(World& world, const StepOptions& options, StepScratch& scratch);

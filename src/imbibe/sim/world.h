@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "imbibe/core/types.h"
+#include "imbibe/coupling/contact.h"
 #include "imbibe/coupling/exchange_state.h"
 #include "imbibe/coupling/face_map.h"
 #include "imbibe/fabric/fabric.h"
@@ -32,6 +33,8 @@ struct Textile {
   std::shared_ptr<const WettingModel> model;  // conductances and capacities for this fabric and liquid
   Placement placement;
   std::shared_ptr<const FaceMap> faces;       // nodes by place, for the exchange with liquid on the faces
+  std::shared_ptr<const YarnContactIndex> yarn_boxes;  // for the swept contact of particles with yarns
+  ContactParams contact;
   Contents contents;
   ExchangeState exchange;
 };
