@@ -15,13 +15,16 @@
 // cloth (plain polyester) and is a plain parameter.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "imbibe/core/parameter.h"
 #include "imbibe/core/types.h"
 #include "imbibe/fabric/network.h"
+#include "imbibe/wetting/along_yarn.h"
 #include "imbibe/wetting/contents.h"
+#include "imbibe/wetting/sorption.h"
 
 namespace imbibe {
 
@@ -111,6 +114,7 @@ struct YarnWetting {
   Real swelling_regain = 0;  // kg/kg, most that the fibre substance takes
   Real regain_65 = 0;
   Real area_swelling = 0;
+  Real shell_rate = 0;       // 1/s, D_f/R_f^2
 };
 
 struct WettingEdge {
@@ -130,7 +134,7 @@ struct WettingModel {
   WettingLiquid liquid;
   std::size_t segments = 0, pores = 0;
   std::size_t nodes() const { return segments + pores; }
-  Real thickness = 0;  // m
+  Real thickness = 0;  // m, also the length of a pore from face to face
   Real area = 0;       // m2 of the sheet, one face
 
   // Materials
@@ -141,7 +145,9 @@ struct WettingModel {
   std::vector<Index> segment_type;
   std::vector<Real> dry_mass;         // kg, dry fibre
   std::vector<Real> yarn_volume;      // m3, pi r^2 length: fibres and voids
-  std::vector<Real> supply_conductance;  // per node: liquid on the face -> node, units as WettingEdge
+  std::vector<Real> supply_conductance;   // per node: liquid on the face -> node, units as WettingEdge; pores see
+                                          // capillary.h (a tube) except in the model as printed
+  std::vector<Real> release_conductance;  // m3/(Pa s), per node: over-full node -> its faces
   std::vector<Real> vapour_area;      // m2, per node, both faces
 
   // Pores
@@ -158,7 +164,24 @@ struct WettingModel {
   std::vector<WettingEdge> edges;
   std::vector<Index> row_start;       // nodes + 1
   std::vector<Index> row_edge, row_other;
+
+  // Who lies beside whom, whether liquid can pass or not (swelling, fibres without voids).
+  std::vector<Index> pore_start, pore_segment;     // segments of pore i: [start[i], start[i+1])
+  std::vector<Index> segment_start, segment_pore;  // pores of segment i, as node numbers
+  std::span<const Index> segments_of_pore(std::size_t pore) const {
+    return {pore_segment.data() + pore_start[pore], pore_segment.data() + pore_start[pore + 1]};
+  }
+  std::span<const Index> pores_of_segment(std::size_t segment) const {
+    return {segment_pore.data() + segment_start[segment], segment_pore.data() + segment_start[segment + 1]};
+  }
+
+  RadialShells shells;                // sorption = shells
 };
+
+// p(s) of a node on its filling branch; a pore that does not wet pushes its liquid out at every content.
+Sloped filling_pressure(const WettingModel& model, std::size_t node, Real saturation);
+// As above; below the highest saturation reached since the node was dry, the draining branch and the way to it.
+Sloped hysteretic_pressure(const WettingModel& model, std::size_t node, Real saturation, Real reached);
 
 // Throws InputError where network and parameters make no model (pores without volume, a yarn with no radius, ...).
 WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams& params, const WettingLiquid& liquid);

@@ -1,0 +1,79 @@
+#include "imbibe/wetting/along_yarn.h"
+
+#include <algorithm>
+
+namespace imbibe {
+namespace {
+const Real ln_1000 = std::log(Real(1000));
+}
+
+Real axial_permeability(Real fibre_radius, Real packing, Real tortuosity_squared) {
+  const Real voids = 1 - packing;
+  return 8 * fibre_radius * fibre_radius / 53 * voids * voids * voids / (packing * packing) / tortuosity_squared;
+}
+
+Real transverse_permeability(Real fibre_radius, Real packing, Real tortuosity_squared) {
+  const Real gap = std::max<Real>(0, std::sqrt(0.9069 / packing) - 1);
+  return 0.231 * fibre_radius * fibre_radius * gap * gap * std::sqrt(gap) / tortuosity_squared;
+}
+
+Real mean_suction(Real surface_tension, Real cos_angle, Real fibre_radius, Real packing) {
+  return surface_tension * cos_angle * 2 * packing / (fibre_radius * (1 - packing));
+}
+
+Real entry_suction(Real mean, Real size_index) { return mean * std::pow(0.5, 1 / size_index); }
+
+Sloped pressure_at(const Retention& r, Real saturation) {
+  if (saturation >= 1) {
+    const Real slope = (r.entry + r.open) / r.overfill;
+    return {-r.entry + slope * (saturation - 1), slope};
+  }
+  if (saturation <= driest) return {-r.entry * std::pow(driest, -1 / r.size_index), 0};
+  const Real suction = r.entry * std::pow(saturation, -1 / r.size_index);
+  return {-suction, suction / (r.size_index * saturation)};
+}
+
+Real saturation_at(const Retention& r, Real pressure) {
+  if (pressure >= -r.entry) return 1 + (pressure + r.entry) * r.overfill / (r.entry + r.open);
+  return std::pow(-pressure / r.entry, -r.size_index);
+}
+
+Real relative_permeability(Real saturation, Real size_index) {
+  if (saturation >= 1) return 1;
+  return saturation <= 0 ? 0 : std::pow(saturation, 3 + 2 / size_index);
+}
+
+Sloped kirchhoff_potential(Real entry, Real size_index, Real pressure) {
+  const Real power = 3 * size_index + 1;
+  if (pressure >= -entry) return {entry / power + (pressure + entry), 1};
+  const Real ratio = entry / -pressure;
+  const Real raised = std::pow(ratio, power);
+  return {entry * raised / power, raised * ratio};
+}
+
+Sloped kunzel_potential(Real saturation) {
+  if (saturation >= 1) return {(1 - 1e-3) / ln_1000 + (saturation - 1), 1};
+  const Real diffusivity = std::exp((saturation - 1) * ln_1000);
+  return {(diffusivity - 1e-3) / ln_1000, diffusivity};
+}
+
+Sloped printed_potential(Real saturation) {
+  const Real diffusivity = std::exp(-saturation * ln_1000);
+  return {(1 - diffusivity) / ln_1000, diffusivity};
+}
+
+Real kunzel_diffusivity(Real absorption_coefficient, Real free_saturation) {
+  const Real speed = absorption_coefficient / free_saturation;
+  return 3.8 * speed * speed;
+}
+
+Real printed_diffusivity(Real absorption_coefficient, Real density, Real saturated_share) {
+  return 3.8 * absorption_coefficient / (density * saturated_share);
+}
+
+Real sorptivity_squared(Real permeability, Real entry, Real viscosity, Real void_share, Real size_index) {
+  const Real m = 2 + 1 / size_index;
+  return permeability * entry / (viscosity * void_share) * (2 + (1 / (m + 1) + 1 / (m + 2)) / size_index);
+}
+
+}  // namespace imbibe

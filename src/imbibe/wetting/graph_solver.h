@@ -1,0 +1,62 @@
+// Sparse linear systems on a graph, and the rules that keep Newton's method inside the physics.
+//
+// Solver: BiCGSTAB (van der Vorst 1992) with an incomplete factorisation without fill-in, ILU(0), of fixed blocks of
+// rows. The matrices are column-dominant M-matrices (backward Euler of conservative flows), for which ILU(0) exists.
+// Stops at `tolerance` times the right-hand side, or at `floor` absolute: with a relative test alone a system at rest
+// (right-hand side zero) would iterate on rounding. Blocks are fixed, sums are added tile by tile: the same bits for
+// any number of threads.
+// Newton: a saturation moves by at most 0.3, stays above 0 by shrinking, and lands at the kink s = 1 (where the slope
+// of p(s) jumps by two orders) before it crosses.
+// Tested in tests/wetting/graph_solver_test.cpp against dense elimination.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "imbibe/core/types.h"
+
+namespace imbibe {
+
+// Compressed sparse rows; the diagonal is held apart.
+struct GraphMatrix {
+  std::vector<Index> row_start;  // rows + 1
+  std::vector<Index> column;
+  std::vector<Real> value;
+  std::vector<Real> diagonal;
+  std::size_t rows() const { return diagonal.size(); }
+};
+
+void multiply(const GraphMatrix& matrix, std::span<const Real> x, std::span<Real> result);
+
+inline constexpr std::size_t factor_block = 4096;  // rows; entries between blocks stay out of the factors
+
+struct LinearSolve {
+  int iterations = 0;
+  bool converged = false;
+  Real residual = 0;  // largest entry of |b - A x|
+};
+
+// Scratch of the solver; reused between solves.
+struct LinearWorkspace {
+  GraphMatrix factors;
+  std::vector<Real> r, r0, p, v, s, t, y, z;
+};
+
+LinearSolve solve_bicgstab(const GraphMatrix& matrix, std::span<const Real> right_hand_side, std::span<Real> x,
+                           Real tolerance, Real floor, int most_iterations, LinearWorkspace& work);
+
+inline constexpr Real largest_newton_change = 0.3;
+inline constexpr Real kink_landing = 1e-3;
+
+// The saturation after Newton's `change`, by the rules above.
+constexpr Real damped_saturation(Real saturation, Real change) {
+  Real next = saturation + (change > largest_newton_change    ? largest_newton_change
+                            : change < -largest_newton_change ? -largest_newton_change
+                                                              : change);
+  if (saturation < 1 && next > 1 + kink_landing) next = 1 + kink_landing;
+  if (saturation > 1 && next < 1 - kink_landing) next = 1 - kink_landing;
+  const Real least = 0.1 * saturation;
+  return next > least ? next : least;
+}
+
+}  // namespace imbibe

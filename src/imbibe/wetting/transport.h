@@ -1,0 +1,75 @@
+// One implicit step of liquid on the network: backward Euler, Newton, and a last update of masses from edge flows.
+//
+//   V_i (s_i - s_i^n) + dt [sum_j q_ij - q_supply,i + q_release,i] = 0,   |residual| <= 1e-9 V_i
+//   supply   inflow_i dt = min(law_i(s_i) dt, available_i)                (complementarity, inside the residual)
+//   release  q = T max(p_i - P_open,i, 0) to the face, and what stands above s = 1 + delta when the step is done
+//
+// V_i m3 held at s = 1 (swelling counted), q_ij m3/s. The laws of q_ij: along_yarn.h, crossing.h, capillary.h, entry.h.
+// Only wet nodes, supplied nodes and their neighbours are solved; the set grows when liquid reaches its rim. The final
+// masses come from the flows, each computed once per edge, so they add up to rounding at any tolerance; a node that
+// this would leave below zero (by the tolerance) has its outflows cut to what it holds.
+// The maximum principle holds without gravity and supply: at the node of highest pressure every link flows outward.
+// Tested in tests/wetting/transport_test.cpp.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "imbibe/wetting/graph_solver.h"
+#include "imbibe/wetting/wetting_model.h"
+#include "imbibe/wetting/wetting_step.h"
+
+namespace imbibe {
+
+struct TransportInput {
+  const WettingModel* model = nullptr;
+  std::span<const FaceSupply> supplies;
+  std::span<const Real> available_kg;  // per supply, left in this call
+  Vec3 gravity{};
+  Real dt = 0;
+};
+
+struct TransportResult {
+  bool converged = false;
+  int newton_iterations = 0, linear_iterations = 0;
+  std::size_t active_nodes = 0;
+  Real largest_change = 0;
+};
+
+// Node numbers of the solved set and everything that is computed on it. Reused between steps; never part of a state.
+struct TransportWorkspace {
+  struct LocalEdge {
+    Index edge = 0, a = 0, b = 0;       // global edge, local nodes
+    Real factor = 0;                    // conductance now (share of a pore's walls that is wetted, D_ww)
+    Real entry = 0;                     // P_e of the curve that the link's potential follows
+    Real flow = 0, slope_a = 0, slope_b = 0;  // m3/s, and per saturation of a and b
+  };
+  struct LocalSupply {
+    std::size_t supply = 0;
+    Index node = 0;
+    Real flow = 0, slope = 0;           // m3/s into the node
+    bool limited = false;
+  };
+  std::vector<Index> local_of;          // per node: its place in `active`, or no_index
+  std::vector<char> is_seed;
+  std::vector<Index> active;
+  std::vector<Real> volume, old_content, old_saturation, saturation, pressure, pressure_slope, potential,
+      potential_slope, release, release_slope, residual, change, reached, scale;
+  std::vector<LocalEdge> edges;
+  std::vector<Index> row_start, row_edge, row_other;
+  std::vector<LocalSupply> supplies;
+  std::vector<Index> edge_place;        // per global edge
+  std::vector<Real> supply_kg;          // per supply: taken in this step
+  GraphMatrix matrix;
+  LinearWorkspace linear;
+};
+
+// Advances contents.liquid_kg by input.dt, adds to `released` and sets work.supply_kg. On failure (result.converged
+// false) contents are unchanged.
+TransportResult advance_transport(const TransportInput& input, Contents& contents, TransportWorkspace& work,
+                                  std::vector<ReleasedLiquid>& released);
+
+// The largest rate of change of any saturation now, 1/s.
+Real largest_saturation_rate(const TransportInput& input, const Contents& contents, TransportWorkspace& work);
+
+}  // namespace imbibe

@@ -1,0 +1,464 @@
+#include "imbibe/wetting/wetting_model.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+#include "imbibe/core/error.h"
+#include "imbibe/wetting/capillary.h"
+#include "imbibe/wetting/crossing.h"
+#include "imbibe/wetting/entry.h"
+#include "imbibe/wetting/isotherm.h"
+#include "imbibe/wetting/swelling.h"
+
+namespace imbibe {
+namespace {
+
+constexpr Real least_kunzel_entry = 100;           // Pa, where a yarn known only by A_w has no suction of its own
+constexpr Real water_self_diffusion = 2.3e-9;      // m2/s, D* of eq. 10
+constexpr Real scanning_power = 4;                 // from the filling to the draining branch: P_c ~ s^-4
+
+Real advancing_angle(const Fibre& fibre, const WettingLiquid& liquid) {
+  return liquid.advancing_angle >= 0 ? liquid.advancing_angle : fibre.advancing_angle;
+}
+Real receding_angle(const Fibre& fibre, const WettingLiquid& liquid) {
+  return liquid.receding_angle >= 0 ? liquid.receding_angle : fibre.receding_angle;
+}
+
+YarnWetting yarn_wetting(const YarnType& type, const WettingParams& p, const WettingLiquid& liquid) {
+  const Fibre& fibre = type.fibre;
+  YarnWetting yarn;
+  yarn.void_share = type.monofilament ? 0 : type.void_share();
+  yarn.cos_advancing = std::cos(advancing_angle(fibre, liquid));
+  yarn.sorption_rate = sorption_rate(fibre.diffusivity, fibre.radius);
+  yarn.shell_rate = fibre.diffusivity / (fibre.radius * fibre.radius);
+  yarn.swelling_regain = fibre.swelling_regain();
+  yarn.regain_65 = equilibrium_regain(fibre, 0.65);
+  yarn.area_swelling = p.swelling ? fibre.area_swelling : 0;
+  const Real coefficient =
+      type.absorption_coefficient > 0 ? type.absorption_coefficient : fibre.absorption_coefficient;
+  if (p.model == TransportModel::as_printed) {
+    yarn.printed_share = fibre.density * yarn.regain_65 / liquid.density;
+    yarn.wets = coefficient > 0 && yarn.printed_share > 0;
+    if (yarn.wets) yarn.diffusivity = printed_diffusivity(coefficient, liquid.density, yarn.printed_share);
+    return yarn;
+  }
+  if (yarn.void_share <= 0) return yarn;
+  yarn.axial = axial_permeability(fibre.radius, type.packing, type.tortuosity_squared);
+  yarn.transverse = transverse_permeability(fibre.radius, type.packing, type.tortuosity_squared);
+  const auto entry = [&](Real angle) {
+    const Real inside = std::cos(std::min(pi, angle + p.pore_divergence));
+    return entry_suction(mean_suction(liquid.surface_tension, inside, fibre.radius, type.packing), p.yarn_size_index);
+  };
+  yarn.entry = entry(advancing_angle(fibre, liquid));
+  yarn.entry_receding = std::max(yarn.entry, entry(receding_angle(fibre, liquid)));
+  yarn.wets = yarn.entry > 0;
+  if (p.model == TransportModel::kunzel) {
+    yarn.wets = coefficient > 0;
+    yarn.entry = std::max(yarn.entry, least_kunzel_entry);
+    yarn.entry_receding = std::max(yarn.entry, yarn.entry_receding);
+    yarn.diffusivity = kunzel_diffusivity(coefficient, liquid.density * yarn.void_share);
+  }
+  return yarn;
+}
+
+// What lies around each pore: its yarns' radii, their mean wetting, and the pores beside each segment.
+struct PoreSurroundings {
+  std::vector<Real> warp_radius, weft_radius, cosine, cosine_receding;
+};
+
+PoreSurroundings surroundings(const YarnNetwork& network, const WettingLiquid& liquid) {
+  const std::size_t pores = network.pores(), segments = network.segments();
+  PoreSurroundings result;
+  std::vector<std::array<Real, 6>> sums(pores);
+  for (const Edge& edge : network.edges) {
+    if (edge.kind != EdgeKind::segment_pore) continue;
+    const std::size_t segment = std::min(edge.a, edge.b), pore = std::max(edge.a, edge.b) - segments;
+    const YarnType& type = network.type_of_segment(segment);
+    auto& sum = sums[pore];
+    const std::size_t family = network.family_of_segment(segment) == Family::warp ? 0 : 2;
+    sum[family] += type.radius, sum[family + 1] += 1;
+    sum[4] += std::cos(advancing_angle(type.fibre, liquid));
+    sum[5] += std::cos(receding_angle(type.fibre, liquid));
+  }
+  for (std::size_t i = 0; i < pores; ++i) {
+    const auto& sum = sums[i];
+    const Real count = sum[1] + sum[3];
+    const Fibre fallback = network.yarn_types.empty() ? Fibre{} : network.yarn_types[0].fibre;
+    result.warp_radius.push_back(sum[1] > 0 ? sum[0] / sum[1] : 0);
+    result.weft_radius.push_back(sum[3] > 0 ? sum[2] / sum[3] : 0);
+    result.cosine.push_back(count > 0 ? sum[4] / count : std::cos(advancing_angle(fallback, liquid)));
+    result.cosine_receding.push_back(count > 0 ? sum[5] / count : std::cos(receding_angle(fallback, liquid)));
+  }
+  return result;
+}
+
+void check_input(const YarnNetwork& network, const WettingLiquid& liquid) {
+  std::vector<Problem> problems;
+  const auto report = [&](std::string key, std::string message) {
+    problems.push_back({.file = {}, .key = std::move(key), .message = std::move(message)});
+  };
+  if (!(liquid.density > 0)) report("liquid.density", fmt::format("{} kg/m3 is not above 0", liquid.density));
+  if (!(liquid.viscosity > 0)) report("liquid.viscosity", fmt::format("{} Pa s is not above 0", liquid.viscosity));
+  if (!(liquid.surface_tension > 0)) {
+    report("liquid.surface_tension", fmt::format("{} N/m is not above 0", liquid.surface_tension));
+  }
+  if (!(network.thickness > 0)) report("thickness", fmt::format("{} m is not above 0", network.thickness));
+  for (std::size_t i = 0; i < network.yarn_types.size(); ++i) {
+    const YarnType& type = network.yarn_types[i];
+    const std::string key = fmt::format("yarn_types[{}]", i);
+    if (!(type.radius > 0)) report(key + ".radius", fmt::format("{} m is not above 0", type.radius));
+    if (!(type.packing > 0 && type.packing <= 1)) {
+      report(key + ".packing", fmt::format("{} is outside (0, 1]", type.packing));
+    }
+    if (!(type.fibre.radius > 0)) report(key + ".fibre.radius", fmt::format("{} m is not above 0", type.fibre.radius));
+    if (!(type.fibre.density > 0)) {
+      report(key + ".fibre.density", fmt::format("{} kg/m3 is not above 0", type.fibre.density));
+    }
+    if (!(type.tortuosity_squared > 0)) {
+      report(key + ".tortuosity_squared", fmt::format("{} is not above 0", type.tortuosity_squared));
+    }
+  }
+  for (std::size_t i = 0; i < network.pores(); ++i) {
+    if (!(network.pore_volume[i] > 0)) {
+      report(fmt::format("pores[{}]", i),
+             fmt::format("its volume is {} m3: the yarns fill more than the cell; widen the pitch or the thickness",
+                         network.pore_volume[i]));
+      break;
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void add_segments(WettingModel& m, const YarnNetwork& network) {
+  Real weight = 0;
+  for (std::size_t s = 0; s < m.segments; ++s) {
+    const YarnType& type = network.type_of_segment(s);
+    const Index index = network.yarn_type[network.segment_yarn[s]];
+    const YarnWetting& yarn = m.yarns[index];
+    const Real length = network.segment_length[s], r = type.radius;
+    const Real volume = pi * r * r * length;
+    m.segment_type.push_back(index);
+    m.yarn_volume.push_back(volume);
+    const Real solid = type.monofilament ? 1 : type.packing;
+    m.dry_mass.push_back(type.linear_density > 0 ? type.linear_density * length : type.fibre.density * solid * volume);
+    const bool printed = m.params.model == TransportModel::as_printed;
+    m.volume.push_back(!yarn.wets ? 0 : volume * (printed ? yarn.printed_share : yarn.void_share));
+    m.entry.push_back(yarn.entry);
+    m.entry_receding.push_back(yarn.entry_receding);
+    m.open.push_back(m.liquid.surface_tension / r);
+    m.overfill.push_back(m.params.yarn_overfill);
+    m.size_index.push_back(m.params.yarn_size_index);
+    m.centre.push_back(network.segment_centre[s]);
+    // From the face to the yarn's middle: half its perimeter over half its radius.
+    const Real patch = 0.5 * pi * r * length / (0.5 * r);
+    const Real anisotropy = yarn.axial > 0 ? yarn.transverse / yarn.axial : 0;
+    m.release_conductance.push_back(yarn.wets ? yarn.transverse * patch / m.liquid.viscosity : 0);
+    switch (m.params.model) {
+      case TransportModel::physical: m.supply_conductance.push_back(m.release_conductance.back()); break;
+      case TransportModel::kunzel:
+        m.supply_conductance.push_back(yarn.wets ? yarn.void_share * yarn.diffusivity * anisotropy * patch : 0);
+        break;
+      case TransportModel::as_printed:
+        m.supply_conductance.push_back(yarn.printed_share * yarn.diffusivity * patch);
+        break;
+    }
+    const bool warp = network.family_of_segment(s) == Family::warp;
+    m.vapour_area.push_back(length * (warp ? network.pitch_x : network.pitch_y));
+    weight += m.vapour_area.back();
+  }
+  // Both faces of the sheet, shared by the segments: a boundary layer of millimetres does not see the gaps.
+  for (Real& area : m.vapour_area) area *= weight > 0 ? 2 * m.area / weight : 0;
+}
+
+void add_pores(WettingModel& m, const YarnNetwork& network, const PoreSurroundings& around) {
+  const Real tension = m.liquid.surface_tension;
+  for (std::size_t i = 0; i < m.pores; ++i) {
+    const Real cosine = std::clamp<Real>(around.cosine[i], -1, 1), angle = std::acos(cosine);
+    const PoreOpening opening{.gap_x = network.pore_opening_x[i], .gap_y = network.pore_opening_y[i],
+                              .radius_x = around.warp_radius[i], .radius_y = around.weft_radius[i]};
+    const Real throat = network.pore_throat[i];
+    m.pore_throat.push_back(throat);
+    m.pore_wets.push_back(cosine > 1e-9);
+    const Real entry = std::max<Real>(0, throat_suction(tension, cosine, throat));
+    m.pore_entry.push_back(entry);
+    m.pore_entry_receding.push_back(std::max(entry, throat_suction(tension, around.cosine_receding[i], throat)));
+    m.pore_open.push_back(opening_pressure(tension, angle, opening));
+    m.pore_breakthrough.push_back(breakthrough_pressure(tension, angle, opening));
+    m.pore_mouth.push_back(opening.gap_x * opening.gap_y);
+    m.volume.push_back(m.params.pores ? network.pore_volume[i] : 0);
+    m.entry.push_back(entry);
+    m.entry_receding.push_back(m.pore_entry_receding.back());
+    m.open.push_back(m.pore_open.back());
+    m.overfill.push_back(m.params.pore_overfill);
+    m.size_index.push_back(m.params.pore_size_index);
+    m.centre.push_back(network.pore_centre[i]);
+    // Half the way from face to face on average.
+    m.release_conductance.push_back(tube_conductance(throat, m.liquid.viscosity, 0.5 * m.thickness));
+    const Real printed = printed_pore_diffusivity(water_self_diffusion, throat, m.params.printed_pore_velocity) *
+                         m.pore_mouth.back() / (0.5 * m.thickness);
+    m.supply_conductance.push_back(m.params.model == TransportModel::as_printed ? printed : 0);
+    m.vapour_area.push_back(2 * network.pore_area[i]);
+  }
+}
+
+// A bulging yarn gives off where its pores do.
+void set_yarn_opening(WettingModel& m, const YarnNetwork& network) {
+  std::vector<Real> sum(m.segments, 0), count(m.segments, 0);
+  for (const Edge& edge : network.edges) {
+    if (edge.kind != EdgeKind::segment_pore) continue;
+    const Index segment = std::min(edge.a, edge.b), pore = std::max(edge.a, edge.b);
+    sum[segment] += m.open[pore];
+    count[segment] += 1;
+  }
+  for (std::size_t s = 0; s < m.segments; ++s) {
+    if (count[s] > 0 && m.params.pores) m.open[s] = sum[s] / count[s];
+  }
+}
+
+bool same_material(const WettingModel& m, Index type_a, Index type_b) {
+  if (type_a == type_b) return true;
+  const YarnWetting &a = m.yarns[type_a], &b = m.yarns[type_b];
+  return a.entry == b.entry && a.entry_receding == b.entry_receding && a.transverse == b.transverse &&
+         a.diffusivity == b.diffusivity && a.void_share == b.void_share && a.printed_share == b.printed_share;
+}
+
+// What an axial flow is multiplied by: K/eta, or D times the share of the section that holds liquid.
+Real axial_factor(const WettingModel& m, const YarnWetting& yarn) {
+  switch (m.params.model) {
+    case TransportModel::physical: return yarn.axial / m.liquid.viscosity;
+    case TransportModel::kunzel: return yarn.void_share * yarn.diffusivity;
+    case TransportModel::as_printed: return yarn.printed_share * yarn.diffusivity;
+  }
+  return 0;
+}
+
+Real transverse_factor(const WettingModel& m, const YarnWetting& yarn) {
+  if (m.params.model == TransportModel::as_printed) return axial_factor(m, yarn);
+  return yarn.axial > 0 ? axial_factor(m, yarn) * yarn.transverse / yarn.axial : 0;
+}
+
+// Sets the conductance; false where no liquid can pass.
+bool set_conductance(const WettingModel& m, const YarnNetwork& network, WettingEdge& edge) {
+  const auto yarn_of = [&](Index s) -> const YarnWetting& { return m.yarns[m.segment_type[s]]; };
+  const auto along = [&](Index s, Real length) {
+    const Real r = network.type_of_segment(s).radius;
+    return axial_factor(m, yarn_of(s)) * pi * r * r / length;
+  };
+  switch (edge.kind) {
+    case EdgeKind::along_yarn:
+      edge.conductance = along(edge.a, 0.5 * (network.segment_length[edge.a] + network.segment_length[edge.b]));
+      break;
+    case EdgeKind::crossing: {
+      const auto link = [&](Index s) {
+        const Real r = network.type_of_segment(s).radius;
+        const bool printed = m.params.model == TransportModel::as_printed;
+        // As printed: eta D over the same distance as along the yarn; crossing_factor 3 stands for eta = 1.
+        if (printed) return m.params.crossing_factor / 3 * along(s, network.segment_length[s]);
+        return m.params.crossing_factor * transverse_factor(m, yarn_of(s)) * contact_patch(r) / contact_distance(r);
+      };
+      edge.same_material = same_material(m, m.segment_type[edge.a], m.segment_type[edge.b]);
+      const Real a = link(edge.a), b = link(edge.b);
+      if (!(a > 0 && b > 0)) return false;
+      edge.conductance = edge.same_material ? 2 / (1 / a + 1 / b) : 2 * a;
+      edge.conductance_b = 2 * b;
+      break;
+    }
+    case EdgeKind::segment_pore: {
+      if (edge.a > edge.b) std::swap(edge.a, edge.b);
+      const std::size_t pore = edge.b - m.segments;
+      const Real length = network.segment_length[edge.a];
+      const bool warp = network.family_of_segment(edge.a) == Family::warp;
+      const Real gap = warp ? network.pore_opening_y[pore] : network.pore_opening_x[pore];
+      const Real pitch = warp ? network.pitch_y : network.pitch_x;
+      const Real lateral = transverse_factor(m, yarn_of(edge.a)) * 0.4 * pi * length;
+      edge.conductance = yarn_pore_conductance(lateral, along(edge.a, length), 0.5 * std::max(0.0, pitch - gap), gap);
+      break;
+    }
+    case EdgeKind::pore_pore: {
+      const std::size_t a = edge.a - m.segments, b = edge.b - m.segments;
+      const Vec3 offset = m.centre[edge.b] - m.centre[edge.a];
+      const bool in_x = std::abs(offset.x) > std::abs(offset.y);
+      const auto& gap = in_x ? network.pore_opening_y : network.pore_opening_x;
+      const Real free_along = in_x ? 0.5 * (network.pore_opening_x[a] + network.pore_opening_x[b])
+                                   : 0.5 * (network.pore_opening_y[a] + network.pore_opening_y[b]);
+      const Real distance = norm(offset), width = 0.5 * (gap[a] + gap[b]);
+      const Real height = 0.5 * std::max<Real>(0, m.thickness - (distance - free_along));
+      edge.valve = 0.5 * (m.pore_open[a] + m.pore_open[b]);
+      edge.conductance = slot_conductance(width, height, m.liquid.viscosity, distance);
+      if (m.params.model == TransportModel::as_printed) {
+        const Real radius = 0.5 * (m.pore_throat[a] + m.pore_throat[b]);
+        edge.conductance = printed_pore_diffusivity(water_self_diffusion, radius, m.params.printed_pore_velocity) *
+                           width * m.thickness / distance;
+      }
+      break;
+    }
+  }
+  return edge.conductance > 0;
+}
+
+void add_edges(WettingModel& m, const YarnNetwork& network) {
+  for (const Edge& given : network.edges) {
+    const bool with_pore = given.kind == EdgeKind::segment_pore || given.kind == EdgeKind::pore_pore;
+    if (with_pore && !m.params.pores) continue;
+    WettingEdge edge{.a = given.a, .b = given.b, .kind = given.kind};
+    if (!with_pore && (m.volume[edge.a] <= 0 || m.volume[edge.b] <= 0)) continue;
+    if (!set_conductance(m, network, edge)) continue;
+    edge.offset = m.centre[edge.b] - m.centre[edge.a];
+    m.edges.push_back(edge);
+  }
+}
+
+void build_rows(WettingModel& m) {
+  m.row_start.assign(m.nodes() + 1, 0);
+  for (const WettingEdge& edge : m.edges) ++m.row_start[edge.a + 1], ++m.row_start[edge.b + 1];
+  for (std::size_t i = 0; i < m.nodes(); ++i) m.row_start[i + 1] += m.row_start[i];
+  std::vector<Index> next(m.row_start.begin(), m.row_start.end() - 1);
+  m.row_edge.resize(m.row_start.back());
+  m.row_other.resize(m.row_start.back());
+  for (Index e = 0; e < m.edges.size(); ++e) {
+    const auto [a, b] = std::pair{m.edges[e].a, m.edges[e].b};
+    m.row_edge[next[a]] = e, m.row_other[next[a]++] = b;
+    m.row_edge[next[b]] = e, m.row_other[next[b]++] = a;
+  }
+}
+
+void build_neighbours(WettingModel& m, const YarnNetwork& network) {
+  const auto fill = [&](std::size_t rows, auto&& row, auto&& value, std::vector<Index>& start, std::vector<Index>& out) {
+    start.assign(rows + 1, 0);
+    for (const Edge& e : network.edges) {
+      if (e.kind == EdgeKind::segment_pore) ++start[row(e) + 1];
+    }
+    for (std::size_t i = 0; i < rows; ++i) start[i + 1] += start[i];
+    out.resize(start.back());
+    std::vector<Index> next(start.begin(), start.end() - 1);
+    for (const Edge& e : network.edges) {
+      if (e.kind == EdgeKind::segment_pore) out[next[row(e)]++] = value(e);
+    }
+  };
+  const auto segment = [](const Edge& e) { return std::min(e.a, e.b); };
+  const auto pore_node = [](const Edge& e) { return std::max(e.a, e.b); };
+  const auto pore = [&](const Edge& e) { return pore_node(e) - static_cast<Index>(m.segments); };
+  fill(m.pores, pore, segment, m.pore_start, m.pore_segment);
+  fill(m.segments, segment, pore_node, m.segment_start, m.segment_pore);
+}
+
+}  // namespace
+
+WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams& params,
+                                 const WettingLiquid& liquid) {
+  check_input(network, liquid);
+  WettingModel m;
+  m.params = params;
+  m.liquid = liquid;
+  m.segments = network.segments();
+  m.pores = network.pores();
+  m.thickness = network.thickness;
+  m.area = network.size_x * network.size_y;
+  for (const YarnType& type : network.yarn_types) {
+    m.fibres.push_back(type.fibre);
+    m.yarns.push_back(yarn_wetting(type, params, liquid));
+  }
+  add_segments(m, network);
+  add_pores(m, network, surroundings(network, liquid));
+  set_yarn_opening(m, network);
+  add_edges(m, network);
+  build_rows(m);
+  build_neighbours(m, network);
+  if (params.sorption == SorptionModel::shells) m.shells = build_radial_shells(params.shells);
+  return m;
+}
+
+Sloped filling_pressure(const WettingModel& m, std::size_t node, Real saturation_value) {
+  if (node >= m.segments && !m.pore_wets[node - m.segments]) {
+    // Pushes its liquid out at every content; the last per cent clings to the crossings.
+    constexpr Real cling = 0.01, cling_suction = 100;
+    const Real slope = m.open[node] / (1 + m.overfill[node]);
+    const Real s = std::max(saturation_value, driest);
+    if (s >= cling) return {slope * s, slope};
+    const Real rise = std::sqrt(cling / s);
+    return {slope * s - cling_suction * (rise - 1), slope + 0.5 * cling_suction * rise / s};
+  }
+  return pressure_at({m.entry[node], m.size_index[node], m.open[node], m.overfill[node]}, saturation_value);
+}
+
+Sloped hysteretic_pressure(const WettingModel& m, std::size_t node, Real s, Real reached) {
+  const Real top = std::min<Real>(1, reached);
+  if (s >= top || s <= driest || (node >= m.segments && !m.pore_wets[node - m.segments])) {
+    return filling_pressure(m, node, s);
+  }
+  const Real index = m.size_index[node];
+  const Real draining = m.entry_receding[node] * std::pow(s, -1 / index);
+  const Real scanning = m.entry[node] * std::pow(top, -1 / index) * std::pow(top / s, scanning_power);
+  if (draining < scanning) return {-draining, draining / (index * s)};
+  return {-scanning, scanning_power * scanning / s};
+}
+
+Contents conditioned_contents(const WettingModel& m, const Air& air) {
+  Contents contents;
+  contents.liquid_kg.assign(m.nodes(), 0);
+  std::vector<Real> regain;
+  for (const Fibre& fibre : m.fibres) regain.push_back(equilibrium_regain(fibre, air.humidity));
+  for (std::size_t s = 0; s < m.segments; ++s) {
+    const Real w = regain[m.segment_type[s]];
+    contents.sorbed_kg.push_back(m.dry_mass[s] * w);
+    contents.shell_regain.insert(contents.shell_regain.end(), static_cast<std::size_t>(m.shells.count), w);
+  }
+  if (m.params.hysteresis) contents.reached_saturation.assign(m.nodes(), 0);
+  return contents;
+}
+
+Real current_volume(const WettingModel& m, const Contents& contents, std::size_t node) {
+  const auto growth = [&](std::size_t s) {
+    const YarnWetting& yarn = m.yarns[m.segment_type[s]];
+    return swollen_area(yarn.area_swelling, contents.sorbed_kg[s] / m.dry_mass[s], yarn.regain_65,
+                        yarn.swelling_regain);
+  };
+  if (m.params.model == TransportModel::as_printed || m.volume[node] <= 0) return m.volume[node];
+  if (node < m.segments) return m.yarns[m.segment_type[node]].area_swelling > 0 ? m.volume[node] * growth(node)
+                                                                                : m.volume[node];
+  Real taken = 0;
+  for (const Index s : m.segments_of_pore(node - m.segments)) {
+    if (m.yarns[m.segment_type[s]].area_swelling > 0) taken += 0.25 * m.yarn_volume[s] * (growth(s) - 1);
+  }
+  return shrunk_pore(m.volume[node], taken);
+}
+
+Real saturation(const WettingModel& m, const Contents& contents, std::size_t node) {
+  const Real volume = current_volume(m, contents, node);
+  if (volume > 0) return contents.liquid_kg[node] / (m.liquid.density * volume);
+  if (node >= m.segments) return 0;
+  const YarnWetting& yarn = m.yarns[m.segment_type[node]];
+  return yarn.swelling_regain > 0 ? node_regain(m, contents, node) / yarn.swelling_regain : 0;
+}
+
+Real node_pressure(const WettingModel& m, const Contents& contents, std::size_t node) {
+  if (m.volume[node] <= 0 || m.params.model == TransportModel::as_printed) return 0;
+  const Real s = saturation(m, contents, node);
+  const Real reached = contents.reached_saturation.empty() ? 0 : contents.reached_saturation[node];
+  return m.params.hysteresis ? hysteretic_pressure(m, node, s, reached).value : filling_pressure(m, node, s).value;
+}
+
+Real node_regain(const WettingModel& m, const Contents& contents, std::size_t segment) {
+  return contents.sorbed_kg[segment] / m.dry_mass[segment];
+}
+
+namespace {
+Real sum_of(const std::vector<Real>& values, std::size_t begin, std::size_t end) {
+  Real sum = 0;
+  for (std::size_t i = begin; i < end; ++i) sum += values[i];
+  return sum;
+}
+}  // namespace
+
+Real total_sorbed_kg(const WettingModel& m, const Contents& contents) {
+  return sum_of(contents.sorbed_kg, 0, m.segments);
+}
+Real total_yarn_kg(const WettingModel& m, const Contents& contents) {
+  return sum_of(contents.liquid_kg, 0, m.segments);
+}
+Real total_pore_kg(const WettingModel& m, const Contents& contents) {
+  return sum_of(contents.liquid_kg, m.segments, m.nodes());
+}
+
+}  // namespace imbibe
