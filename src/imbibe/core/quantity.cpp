@@ -35,6 +35,7 @@ struct UnitSystem {
   }
   void add(const char* name, const char* definition) {
     Unit unit(ut_parse(system, definition, UT_UTF8));
+    ut_unmap_name_to_unit(system, name, UT_UTF8);  // the database's denier is rounded to seven digits
     ut_map_name_to_unit(name, UT_UTF8, unit.get());
   }
 };
@@ -51,7 +52,7 @@ std::string trimmed(std::string_view text) {
 }
 
 Unit parse_unit(UnitSystem& s, std::string text) {
-  if (!text.empty() && text.front() == '/') text = "1" + text;  // "24 /cm"
+  if (!text.empty() && text.front() == '/') text.insert(text.begin(), '1');  // "24 /cm"
   if (text.empty()) text = "1";
   return Unit(ut_parse(s.system, text.c_str(), UT_UTF8));
 }
