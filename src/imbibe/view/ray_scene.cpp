@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "imbibe/core/error.h"
+#include "imbibe/core/parallel.h"
 #include "imbibe/view/liquid_surface.h"
 #include "imbibe/view/shape_mesh.h"
 
@@ -77,8 +77,7 @@ struct RayScene::Parts {
 };
 
 RayScene::Parts::Parts(const Frame& f) : frame(f) {
-  // Trees are built by one thread: then they, and with them the last bit of every hit, are always the same.
-  device.reset(rtcNewDevice("threads=1,set_affinity=0"));
+  device.reset(rtcNewDevice(nullptr));
   if (!device) throw std::runtime_error("pictures: the ray tracing library does not start on this machine");
   solids.reset(rtcNewScene(device.get()));
   liquid.reset(rtcNewScene(device.get()));
@@ -94,10 +93,14 @@ RayScene::Parts::Parts(const Frame& f) : frame(f) {
     prepare_yarns();
     if (!piece_point.empty()) attach_yarns(static_cast<unsigned>(parts.size()));
   }
-  rtcCommitScene(solids.get());
   if (!frame.particles.empty()) liquid_mesh = liquid_surface(frame.particles, frame.particle_spacing);
   if (!liquid_mesh.triangles.empty()) attach_mesh(device.get(), liquid.get(), liquid_mesh, 0);
-  rtcCommitScene(liquid.get());
+  {
+    // Trees are built by one thread: then they, and with them the last bit of every hit, are always the same.
+    const ThreadLimit one(1);
+    rtcCommitScene(solids.get());
+    rtcCommitScene(liquid.get());
+  }
 
   Bounds all = bounds_of_cloth(frame);
   all.include(bounds_of_solids(frame));
@@ -136,14 +139,8 @@ void RayScene::Parts::attach_yarns(unsigned id) {
     }
   auto* pieces = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
                                                                 sizeof(unsigned), piece_point.size()));
-  auto* flags = static_cast<unsigned char*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR,
-                                                                    1, piece_point.size()));
-  for (std::size_t i = 0; i < piece_point.size(); ++i) {
-    const Index p = piece_point[i], yarn = piece_yarn[i];
-    pieces[i] = p;
-    flags[i] = static_cast<unsigned char>((p > y.first_point[yarn] ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
-                                          (p + 2 < y.first_point[yarn + 1] ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0));
-  }
+  // No neighbour flags: pieces shorter than their radius would be cut wrongly; as whole capsules their union is right.
+  std::copy(piece_point.begin(), piece_point.end(), pieces);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(solids.get(), geometry, id);
   rtcReleaseGeometry(geometry);

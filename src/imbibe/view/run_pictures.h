@@ -27,7 +27,6 @@ class RunPictures {
   PictureOptions options_;
   std::optional<Stage> stage_;
   std::unique_ptr<FilmWriter> film_;
-  std::string film_problem_;
   int count_ = 0;
 };
 

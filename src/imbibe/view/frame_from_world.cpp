@@ -1,0 +1,47 @@
+#include "imbibe/view/frame_from_world.h"
+
+#include <algorithm>
+
+#include "imbibe/sim/measures.h"
+
+namespace imbibe {
+
+namespace {
+
+void add_textile(DrawnYarns& yarns, const Textile& textile, const Air& air) {
+  const YarnNetwork& network = textile.fabric->network;
+  const std::vector<Real> saturations = node_saturations(textile, air);
+  const auto per_segment = static_cast<std::size_t>(network.points_per_segment);
+  std::vector<Vec3f> points;
+  std::vector<float> values;
+  for (std::size_t y = 0; y < network.yarn_family.size(); ++y) {
+    const std::size_t first_point = network.yarn_first_point[y], end_point = network.yarn_first_point[y + 1];
+    const std::size_t first = network.yarn_first_segment[y], segments = network.yarn_first_segment[y + 1] - first;
+    points.clear(), values.clear();
+    for (std::size_t i = first_point; i < end_point; ++i) {
+      points.emplace_back(textile.placement.to_world(network.points[i]));
+      // The last point ends the last segment: as in the run's files.
+      const std::size_t segment = first + std::min((i - first_point) / per_segment, segments - 1);
+      values.push_back(static_cast<float>(saturations[segment]));
+    }
+    const YarnType& type = network.yarn_types[network.yarn_type[y]];
+    add_yarn(yarns, points, values, static_cast<float>(type.radius), type.colour);
+  }
+}
+
+}  // namespace
+
+Frame frame_from_world(const World& world, const std::string& title) {
+  Frame frame;
+  frame.time = world.time;
+  frame.title = title;
+  for (const Textile& textile : world.textiles) add_textile(frame.yarns, textile, world.air);
+  if (!world.textiles.empty()) frame.up = Vec3f(world.textiles.front().placement.n);
+  frame.particle_spacing = world.liquid.spacing();
+  frame.particles.reserve(world.liquid.particles.size());
+  for (const Float4& p : world.liquid.particles.position) frame.particles.push_back({p.x, p.y, p.z});
+  for (const SolidBody& solid : world.solids) frame.solids.push_back({solid.shape, {}, solid.colour});
+  return frame;
+}
+
+}  // namespace imbibe
