@@ -1,0 +1,85 @@
+#include "imbibe/liquid/density.h"
+
+#include <array>
+
+namespace imbibe {
+
+using simd::Floats;
+using simd::Floats3;
+using simd::Floats4;
+using simd::lanes;
+
+namespace {
+
+constexpr std::size_t completion_entries = 512;
+
+// |n| H of a flat surface at its steepest, depth 0: 21 (1 - 3/2 + 4/7).
+constexpr double steepest = 21.0 * (1.0 - 1.5 + 4.0 / 7.0);
+
+// lambda over |n| H at equal steps of |n| H, both for depths from H (0) to 0 (steepest).
+std::array<float, completion_entries + 1> completion_table() {
+  std::array<float, completion_entries + 1> table{};
+  for (std::size_t k = 0; k <= completion_entries; ++k) {
+    const double wanted = steepest * static_cast<double>(k) / completion_entries;
+    double near = 0, far = 1;  // depth in H; the slope falls with depth
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (near + far);
+      (-half_space_integral(middle, 1).slope > wanted ? near : far) = middle;
+    }
+    table[k] = static_cast<float>(half_space_integral(near, 1).lambda);
+  }
+  return table;
+}
+
+}  // namespace
+
+float air_completion(float gradient_h) {
+  static const auto table = completion_table();
+  const float place = std::min(gradient_h * static_cast<float>(completion_entries / steepest),
+                               static_cast<float>(completion_entries) - 0.001f);
+  const auto k = static_cast<std::size_t>(place);
+  return table[k] + (place - static_cast<float>(k)) * (table[k + 1] - table[k]);
+}
+
+float density_error(float filling, float gradient_h) {
+  constexpr float spray = 0.55f, lowest = -0.05f;
+  if (filling <= spray) return std::max(0.0f, filling - 1);
+  return std::max(lowest, filling + air_completion(gradient_h) - 1);
+}
+
+void compute_density(LiquidFields& f) {
+  const Kernel kernel = f.neighbours.kernel;
+  const float volume = f.volume;
+  const float tiny = 1e-6f * kernel.inverse * kernel.inverse;  // a particle alone
+  const float own = volume * kernel.value(0) - static_cast<float>(lattice_excess());
+  parallel_tiles(f.count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; i += lanes) {
+      const Slice s = f.neighbours.slice(i);
+      const Floats4 here = simd::load4(&f.position[i]);
+      Floats sum{}, square{};
+      Floats3 gradient{};
+      for (std::size_t k = 0; k < s.slots; ++k) {
+        const Floats4 there = simd::load4(f.position.data(), s.index + k * lanes);
+        const Floats slope = volume * simd::load(s.slope + k * lanes);
+        const Floats3 x = here.xyz() - there.xyz();
+        const Floats d2 = simd::dot(x, x);
+        const Floats q = simd::sqrt(d2) * kernel.inverse, t = simd::max(1 - q, 0.0f), t2 = t * t;
+        sum += t2 * t2 * (4 * q + 1);
+        gradient.x += slope * x.x, gradient.y += slope * x.y, gradient.z += slope * x.z;
+        square += slope * slope * d2;
+      }
+      const Floats4 wall = simd::load4(&f.boundary.wall[i]);
+      const Floats colour = own + volume * kernel.value_scale * sum;
+      const Floats3 all{gradient.x + wall.x, gradient.y + wall.y, gradient.z + wall.z};
+      const Floats3 doubled{all.x + wall.x, all.y + wall.y, all.z + wall.z};
+      simd::store(&f.colour[i], colour);
+      simd::store(&f.filling[i], colour + wall.w);
+      simd::store4(&f.colour_gradient[i], gradient, kernel.support * simd::sqrt(simd::dot(all, all)));
+      simd::store(&f.factor[i], 1 / (simd::dot(doubled, doubled) + square + tiny));
+      const std::size_t last = std::min(i + lanes, f.count);
+      for (std::size_t p = i; p < last; ++p) f.density_error[p] = density_error(f.filling[p], f.colour_gradient[p].w);
+    }
+  });
+}
+
+}  // namespace imbibe

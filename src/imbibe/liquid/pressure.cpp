@@ -1,0 +1,174 @@
+#include "imbibe/liquid/pressure.h"
+
+#include <cmath>
+
+namespace imbibe {
+
+using simd::Floats;
+using simd::Floats3;
+using simd::Floats4;
+using simd::lanes;
+
+namespace {
+
+// f.acceleration = a(k), k in position.w.
+void pressure_acceleration(LiquidFields& f) {
+  const float volume = f.volume;
+  for_each_slice(f.neighbours, [&](const Slice& s) {
+    const Floats4 here = simd::load4(&f.position[s.first]);
+    Floats3 sum{};
+    for (std::size_t k = 0; k < s.slots; ++k) {
+      const Floats4 there = simd::load4(f.position.data(), s.index + k * lanes);
+      const Floats c = simd::load(s.slope + k * lanes) * (here.w + there.w);
+      sum.x += c * (here.x - there.x), sum.y += c * (here.y - there.y), sum.z += c * (here.z - there.z);
+    }
+    const Floats4 wall = simd::load4(&f.boundary.wall[s.first]);
+    const Floats push = -2 * here.w;
+    simd::store4(&f.acceleration[s.first],
+                 Floats3{push * wall.x - volume * sum.x, push * wall.y - volume * sum.y, push * wall.z - volume * sum.z},
+                 Floats{});
+  });
+}
+
+// D(u) of the eight particles of a slice.
+Floats compression_rate(const LiquidFields& f, const std::vector<Float4>& u, const Slice& s) {
+  const Floats4 here = simd::load4(&f.position[s.first]), own = simd::load4(&u[s.first]);
+  Floats sum{};
+  for (std::size_t k = 0; k < s.slots; ++k) {
+    const Index* id = s.index + k * lanes;
+    const Floats4 there = simd::load4(f.position.data(), id), other = simd::load4(u.data(), id);
+    sum += simd::load(s.slope + k * lanes) * simd::dot(own.xyz() - other.xyz(), here.xyz() - there.xyz());
+  }
+  const Floats4 wall = simd::load4(&f.boundary.wall[s.first]);
+  return f.volume * sum + 2 * simd::dot(own.xyz(), wall.xyz());
+}
+
+struct Sums {
+  double scaled = 0;    // residual . residual / diagonal
+  double absolute = 0;  // sum |residual|
+  Sums& operator+=(const Sums& o) { return scaled += o.scaled, absolute += o.absolute, *this; }
+};
+
+// Particles with little around them have no pressure: their row is taken out (factor 0).
+std::size_t take_out_spray(LiquidFields& f, float spray_filling, std::span<const float> warm) {
+  return parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
+    std::size_t kept = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool spray = f.filling[i] < spray_filling;
+      if (spray) f.factor[i] = 0;
+      kept += !spray;
+      f.position[i].w = f.pressure[i] = spray ? 0 : warm[i];
+    }
+    return kept;
+  });
+}
+
+// u += dt a for a scaled step, k += scale direction, residual -= scale A direction.
+void advance(LiquidFields& f, float scale, float dt, std::size_t begin, std::size_t end) {
+  const float s = scale * dt;
+  for (std::size_t i = begin; i < end; ++i) {
+    Float4& u = f.velocity[i];
+    const Float4& a = f.acceleration[i];
+    u = {u.x + s * a.x, u.y + s * a.y, u.z + s * a.z, 0};
+    f.pressure[i] += scale * f.position[i].w;
+    f.source[i] -= scale * f.applied[i];
+  }
+}
+
+Sums residual_sums(const LiquidFields& f, std::size_t begin, std::size_t end) {
+  Sums sums;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (f.factor[i] == 0) continue;
+    sums.scaled += static_cast<double>(f.source[i]) * (f.source[i] * f.factor[i]);
+    sums.absolute += std::abs(f.source[i]);
+  }
+  return sums;
+}
+
+// residual = D(u)/dt + relaxation e/dt^2.
+Sums first_residual(LiquidFields& f, float dt, float relaxation) {
+  const float rate = 1 / dt, density_rate = relaxation / (dt * dt);
+  return parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; i += lanes) {
+      const Floats d = compression_rate(f, f.velocity, f.neighbours.slice(i));
+      simd::store(&f.source[i], rate * d + density_rate * simd::load(&f.density_error[i]));
+    }
+    return residual_sums(f, begin, end);
+  });
+}
+
+// applied = A direction; returns direction . A direction.
+double apply_operator(LiquidFields& f) {
+  pressure_acceleration(f);
+  return parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; i += lanes) {
+      simd::store(&f.applied[i], -compression_rate(f, f.acceleration, f.neighbours.slice(i)));
+    }
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += static_cast<double>(f.position[i].w) * f.applied[i];
+    return sum;
+  });
+}
+
+void report_density(const LiquidFields& f, PressureReport& report) {
+  const double sum = parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
+    double part = 0;
+    for (std::size_t i = begin; i < end; ++i) part += std::abs(f.density_error[i]);
+    return part;
+  });
+  report.density_error = sum / static_cast<double>(f.count);
+  report.peak_density_error = parallel_max(f.count, 0.0f, [&](std::size_t begin, std::size_t end) {
+    float most = 0;
+    for (std::size_t i = begin; i < end; ++i) most = std::max(most, f.density_error[i]);
+    return most;
+  });
+}
+
+}  // namespace
+
+PressureReport project_velocity(LiquidFields& f, const PressureParams& params, Real dt_s, Real relaxation,
+                                std::vector<float>& warm) {
+  PressureReport report;
+  if (f.count == 0) return report;
+  report_density(f, report);
+  const auto dt = static_cast<float>(dt_s);
+  const auto kept = static_cast<double>(
+      std::max<std::size_t>(1, take_out_spray(f, static_cast<float>(params.spray_filling), warm)));
+  pressure_acceleration(f);
+  parallel_for(f.count, [&](std::size_t i) {
+    Float4& u = f.velocity[i];
+    const Float4& a = f.acceleration[i];
+    u = {u.x + dt * a.x, u.y + dt * a.y, u.z + dt * a.z, 0};
+  });
+  Sums sums = first_residual(f, dt, static_cast<float>(relaxation));
+  double keep = 0;  // of the last direction
+  const auto relative = [&] { return sums.absolute / kept * dt_s * dt_s; };
+  while (report.iterations < params.max_iterations && sums.scaled > 0) {
+    if (report.iterations > 0 && relative() < params.tolerance) break;
+    parallel_for(f.count, [&](std::size_t i) {
+      f.position[i].w = f.source[i] * f.factor[i] + (keep == 0 ? 0 : static_cast<float>(keep) * f.position[i].w);
+    });
+    const double curvature = apply_operator(f);
+    if (!(curvature > 0)) break;
+    const auto scale = static_cast<float>(sums.scaled / curvature);
+    const Sums next = parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
+      advance(f, scale, dt, begin, end);
+      return residual_sums(f, begin, end);
+    });
+    keep = next.scaled / sums.scaled;
+    sums = next;
+    ++report.iterations;
+  }
+  report.residual = relative();
+  report.converged = report.residual < params.tolerance;
+  parallel_for(f.count, [&](std::size_t i) {
+    const float k = f.pressure[i];
+    warm[i] = k;
+    f.wall_push[i] = 2 * k;
+    f.pressure[i] = k * f.rest_density;
+    f.position[i].w = 0;
+  });
+  return report;
+}
+
+}  // namespace imbibe

@@ -1,0 +1,58 @@
+// Incompressible pressure: one projection per step whose source holds the divergence AND the density.
+//
+//   D(u)_i = sum_j V (u_i - u_j).grad W_ij + 2 u_i.G_i           relative rate of compression, 1/s
+//   a(k)_i = -sum_j V (k_i + k_j) grad W_ij - 2 k_i G_i          pressure acceleration, m/s2; k = p/rho0 [m2/s2]
+//   find k:  D(u* + dt a(k)) = -(dt/tau) e / dt                  e relative density error (density.h)
+// u* velocity after all other forces, surface tension among them (surface_tension.h): outside the liquid p = 0.
+// a() is the transpose of -D(), so A = -D a is symmetric positive semi-definite; it is solved by conjugate gradients with
+// its diagonal as preconditioner, started from the last step's pressure. Relaxed Jacobi (0.5), the usual choice with 30
+// neighbours, diverges with 65: the largest eigenvalue of the scaled operator grows with the number of neighbours.
+// Pressure may be negative: nothing is clamped, so the surface is not compressed and suction acts. What a separating
+// spray may not do is pull itself together: particles with little filling have k = 0.
+// tau = density_time: errors of density fade with that time constant instead of being kicked out in one step (which
+// heats the liquid).
+// Sources: Bender & Koschier, IEEE TVCG 23 (2017) 1193 (operators); Asai et al., Int. J. Numer. Meth. Eng. 93 (2012)
+// (mixed source); transposed pair and its conservation of momentum: Cummins & Rudman, J. Comput. Phys. 152 (1999) 584.
+// Tested in tests/liquid/pressure_test.cpp and tests/liquid/drop_test.cpp.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "imbibe/core/parameter.h"
+#include "imbibe/liquid/fields.h"
+
+namespace imbibe {
+
+struct PressureParams {
+  Real tolerance = 1e-4;      // mean relative compression per step the projected velocity may still cause
+  int max_iterations = 60;
+  Real density_time = 5;      // tau in units of sqrt(rho dx^3/(2 pi gamma)); with gamma = 0: in steps / 2
+  Real spray_filling = 0.4;   // below: k = 0
+};
+
+template <class V>
+void describe(V& v, PressureParams& p) {
+  v.value("tolerance", p.tolerance,
+          {.min = 1e-8, .max = 0.1, .help = "mean relative compression per step left by the pressure"});
+  v.value("max_iterations", p.max_iterations, {.min = 1, .max = 10000, .help = "limit of the pressure's iterations"});
+  v.value("density_time", p.density_time,
+          {.min = 1, .max = 1000, .help = "time in which an error of density fades, in shortest capillary times"});
+  v.value("spray_filling", p.spray_filling,
+          {.min = 0, .max = 0.6, .help = "a particle whose kernel is filled less than this has no pressure"});
+}
+
+struct PressureReport {
+  int iterations = 0;
+  Real residual = 0;            // mean relative compression per step left
+  Real density_error = 0;       // mean |e| before the step
+  Real peak_density_error = 0;  // largest e before the step
+  bool converged = true;
+};
+
+// Changes f.velocity to a divergence-free one; fills f.pressure [Pa] and f.wall_push = 2 k (acceleration by walls is
+// -wall_push G). warm: k of the last step per particle, in and out. relaxation = dt/tau in (0, 1].
+PressureReport project_velocity(LiquidFields& f, const PressureParams& params, Real dt, Real relaxation,
+                                std::vector<float>& warm);
+
+}  // namespace imbibe
