@@ -16,7 +16,10 @@ std::string Problem::text() const {
 
 static std::string joined(const std::vector<Problem>& problems) {
   std::string all;
-  for (const Problem& problem : problems) all += (all.empty() ? "" : "\n") + problem.text();
+  for (const Problem& problem : problems) {
+    if (!all.empty()) all += '\n';
+    all += problem.text();
+  }
   return all;
 }
 
