@@ -85,6 +85,12 @@ bool not_finite_word(std::string text) {
          text.starts_with("inf");
 }
 
+// "2.2 kg/(m2 s^0.5)" where exactly that unit is wanted is "2.2": the unit library has no fractional powers.
+std::string without_own_unit(const std::string& text, std::string_view unit) {
+  if (unit.find('^') == std::string_view::npos || !text.ends_with(unit)) return text;
+  return text.substr(0, text.size() - unit.size());
+}
+
 template <class Integer>
 bool read_integer(const DataNode& node, const std::string& path, Integer& out, const ParameterInfo& info,
                   ReadLog& log) {
@@ -110,7 +116,7 @@ bool read_scalar(const DataNode& node, const std::string& path, Real& out, const
   if (not_finite_word(node.text)) return fail(node, path, fmt::format("'{}' is not a finite number", node.text), log);
   Real value = 0;
   try {
-    value = parse_quantity(node.text, info.unit);
+    value = parse_quantity(without_own_unit(node.text, info.unit), info.unit);
   } catch (const QuantityError& e) {
     const std::string hint = shown_unit(info) == "1" ? "" : fmt::format("; wants {}", wanted_quantity(info));
     return fail(node, path, e.what() + hint, log);

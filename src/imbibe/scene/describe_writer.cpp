@@ -16,7 +16,8 @@ std::string exact_in_unit(Real value, const ParameterInfo& info, const std::stri
   try {
     const Real in_unit = convert_from_si(value, info.unit, unit);
     for (int digits = 1; digits <= 12; ++digits) {
-      std::string text = fmt::format("{:.{}g} {}", in_unit, digits, unit);
+      const Real rounded = std::stod(fmt::format("{:.{}g}", in_unit, digits));
+      std::string text = fmt::format("{} {}", rounded, unit);
       if (parse_quantity(text, info.unit) == value) return text;
     }
   } catch (const QuantityError&) {

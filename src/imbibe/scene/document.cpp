@@ -130,6 +130,7 @@ class TreeBuilder : public YAML::EventHandler {
     DataNode key = std::move(*parent.key);
     parent.key.reset();
     if (key.kind != Kind::scalar) return;
+    if (value.kind == Kind::null && value.text.empty()) value.place = key.place;  // the parser's mark is the next token's
     for (std::size_t i = 0; i < parent.node.keys.size(); ++i) {
       if (parent.node.keys[i] != key.text) continue;
       problems_.push_back(problem_at(
