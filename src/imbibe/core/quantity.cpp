@@ -53,7 +53,7 @@ std::string trimmed(std::string_view text) {
 
 Unit parse_unit(UnitSystem& s, std::string text) {
   if (!text.empty() && text.front() == '/') text.insert(text.begin(), '1');  // "24 /cm"
-  if (text.empty()) text = "1";
+  if (text.empty()) text.push_back('1');
   return Unit(ut_parse(s.system, text.c_str(), UT_UTF8));
 }
 

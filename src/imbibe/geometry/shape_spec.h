@@ -29,12 +29,12 @@ struct MeshTransform {
 // mesh: file (transform as wanted).
 struct ShapeSpec {
   ShapeKind kind = ShapeKind::plane;
-  std::optional<Vec3> point, normal;
-  std::optional<Vec3> centre, size;
-  std::optional<Vec3> base, axis;
-  std::optional<Real> radius, height;
-  std::optional<std::string> file;
-  MeshTransform transform;
+  std::optional<Vec3> point{}, normal{};
+  std::optional<Vec3> centre{}, size{};
+  std::optional<Vec3> base{}, axis{};
+  std::optional<Real> radius{}, height{};
+  std::optional<std::string> file{};
+  MeshTransform transform{};
 };
 
 template <class V>
