@@ -209,6 +209,13 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample&
   const Wall& wall = *w.wall;
   out.cos_contact_angle = wall.cos_contact_angle_at ? wall.cos_contact_angle_at(p)
                                                     : static_cast<float>(std::cos(wall.material.contact_angle));
+  out.cos_receding_angle = wall.material.receding_angle >= 0
+                               ? std::max(out.cos_contact_angle, static_cast<float>(std::cos(wall.material.receding_angle)))
+                               : out.cos_contact_angle;
+  // A quarter of a spacing is where the outermost layer rests; nearer the rate would grow without bound.
+  const Real nearest_layer = 0.25 * support / support_over_spacing;
+  out.shear = static_cast<float>(wall.material.friction *
+                                 half_space_shear(std::max(nearest.distance, nearest_layer), support));
   out.friction = static_cast<float>(wall.material.friction);
   out.wall = w.index;
   return true;

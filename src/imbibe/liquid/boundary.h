@@ -26,7 +26,9 @@ struct WallSample {
   float lambda = 0;             // of this wall alone
   Vec3f gradient{};             // this wall's part of G (weighted as above: the samples' gradients add up to G)
   float cos_contact_angle = 0;
+  float cos_receding_angle = 0;  // the same without hysteresis
   float friction = 0;
+  float shear = 0;              // friction * half_space_shear (kernel.h), 1/m2
   Index wall = 0;               // index into the walls of this step
 };
 

@@ -25,11 +25,18 @@ struct LiquidFields {
   std::vector<Float4> velocity;       // m/s
   std::vector<Float4> acceleration;   // m/s2, work space of the stage running
   std::vector<Float4> force;          // m/s2: surface tension and contact line (written by the surface stage)
+  std::vector<Float4> shift;          // m/s, moves particles without being part of their velocity
+  std::vector<Float4> direction;      // work space of solvers
+  std::vector<Float4> residual;
   std::vector<float> filling;         // C_i + lambda_i: density / rest density, walls included
   std::vector<float> colour;          // C_i = V sum W (own included), liquid only
   std::vector<Float4> colour_gradient;  // xyz = V sum grad W over liquid neighbours [1/m], w free
   std::vector<float> factor;          // solver's diagonal
   std::vector<float> source;          // solver's right side
+  std::vector<float> density_error;   // relative, air completed (density.h)
+  std::vector<float> applied;         // work space of solvers
+  std::vector<float> pressure;        // Pa, of the projection
+  std::vector<float> wall_push;       // acceleration by the walls' pressure is -wall_push_i G_i; m2/s2
   std::vector<std::uint8_t> surface;  // set by the class stage: 1 = free surface (pressure is prescribed there)
 };
 

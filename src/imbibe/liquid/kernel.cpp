@@ -44,6 +44,19 @@ SolidIntegral half_space_integral(Real distance, Real support) {
   return {distance >= 0 ? p.lambda : 1 - p.lambda, -p.slope};
 }
 
+Real half_space_shear(Real distance, Real support) {
+  const Real q = distance / support;
+  if (q >= 1) return 0;
+  // Antiderivatives of (1-t)^3 times t^3, t and 1/t.
+  const auto cubic = [](Real t) { return t * t * t * t * (1.0 / 4 - 3.0 / 5 * t + t * t / 2 - t * t * t / 7); };
+  const auto linear = [](Real t) { return t * t * (1.0 / 2 - t + 3.0 / 4 * t * t - t * t * t / 5); };
+  const auto inverse = [](Real t) { return std::log(t) - 3 * t + 1.5 * t * t - t * t * t / 3; };
+  const Real q2 = q * q;
+  const Real integral =
+      cubic(1) - cubic(q) - 2 * q2 * (linear(1) - linear(q)) + q2 * q2 * (inverse(1) - inverse(q));
+  return 10 / distance * 52.5 / support * std::max(0.0, integral);
+}
+
 SolidIntegral solid_integral(Real distance, Real curvature, Real support) {
   const PlaneIntegrals p = plane_integrals(std::abs(distance), support);
   const SolidIntegral plane{distance >= 0 ? p.lambda : 1 - p.lambda, -p.slope};

@@ -65,6 +65,11 @@ struct SolidIntegral {
 };
 
 SolidIntegral half_space_integral(Real distance, Real support);
+
+// The viscous sum of viscosity.h over a half-space of solid whose velocity continues the liquid's linearly through zero
+// at the wall, u(y) = u_i y/d: the acceleration is -nu * half_space_shear * u_t. 1/m2; distance > 0.
+//   10/d * (pi/4) integral over s in [d, H] of |W'| (s^2 - d^2)^2/s^2 ds
+Real half_space_shear(Real distance, Real support);
 // curvature = sum of the two principal curvatures of the solid, 1/m (> 0 convex): 2/R for a ball (exact), 1/R for a
 // cylinder (first order in H/R), 0 for a plane.
 SolidIntegral solid_integral(Real distance, Real curvature, Real support);

@@ -1,12 +1,17 @@
-// One step of the free liquid: sort and neighbours, walls, density and classes, viscosity, surface tension and contact
-// line, divergence-free velocity, kick, constant density, move.
+// One step of the free liquid. Stages in order, each in its own file over the arrays of fields.h:
 //
-// Stages written in their own files and called from here, in this order (each takes LiquidFields& f):
-//   density.h          void compute_density(LiquidFields& f);                      colour, filling, gradient, factor
-//   classes.h          void classify(LiquidFields& f, ...);                        surface set, ParticleClass
-//   viscosity.h        apply_viscosity(f, params.viscosity, eta, dt, impulse)
-//   surface_tension.h  void compute_surface(LiquidFields& f, ..., gamma);          f.force, m/s2
-//   pressure.h         solve_divergence(f, params, dt, warm), solve_pressure(f, params, dt, warm)
+//   neighbours.h       sort_particles, build_lists
+//   boundary.h         sample_walls
+//   density.h          compute_density         colour, filling, their gradient, density error
+//   viscosity.h        apply_viscosity         with the numerical viscosity that surface tension asks for
+//   damping.h          damp_small_scales       (with surface tension)
+//   surface_tension.h  compute_surface         force of the surface and of the contact line, particle classes
+//   (kick)             velocity += dt (gravity + force)
+//   pressure.h         project_velocity        once for a displacement that undoes density errors, once for a velocity
+//                                              without compression
+//   (move)             position += dt velocity, then keep_outside
+//
+// Symplectic Euler; step bounds in liquid_step_bound. Tested in tests/liquid/liquid_step_test.cpp.
 #pragma once
 
 #include <span>
@@ -18,65 +23,76 @@
 #include "imbibe/liquid/fields.h"
 #include "imbibe/liquid/liquid_kind.h"
 #include "imbibe/liquid/particles.h"
+#include "imbibe/liquid/pressure.h"
+#include "imbibe/liquid/surface_tension.h"
 #include "imbibe/liquid/viscosity.h"
 #include "imbibe/liquid/wall.h"
 
 namespace imbibe {
 
 struct LiquidParams {
-  Real max_density_error = 1e-3;     // mean relative compression after the pressure solve
-  Real max_divergence_error = 1e-3;  // mean relative compression per step left by the divergence solve
-  int max_pressure_iterations = 100;
-  int max_divergence_iterations = 100;
-  Real convective_factor = 0.4;      // step <= factor dx/|u|max, and factor sqrt(dx/|a|)
+  Real convective_factor = 0.4;      // step <= factor dx/|u|max, and factor for |a|
   Real capillary_factor = 0.5;       // step <= factor sqrt(rho dx^3/(2 pi gamma))
+  Real position_correction = 1;      // part of the density error undone per step by moving particles; 0: by velocity
+  Real max_density_error = 1e-3;     // mean relative error that this correction may leave
   bool surface_tension = true;
   ViscosityParams viscosity;
+  SurfaceParams surface;
+  PressureParams pressure;
 };
 
 template <class V>
 void describe(V& v, LiquidParams& p) {
-  v.value("max_density_error", p.max_density_error,
-          {.min = 1e-6, .max = 0.1, .help = "largest mean compression after a step"});
-  v.value("max_divergence_error", p.max_divergence_error,
-          {.min = 1e-6, .max = 0.1, .help = "largest mean compression per step that the velocity may still cause"});
-  v.value("max_pressure_iterations", p.max_pressure_iterations, {.min = 1, .max = 10000, .help = "limit"});
-  v.value("max_divergence_iterations", p.max_divergence_iterations, {.min = 0, .max = 10000, .help = "limit"});
   v.value("convective_factor", p.convective_factor,
           {.min = 0, .max = 1, .above_min = true, .help = "largest move of a particle per step, in spacings"});
   v.value("capillary_factor", p.capillary_factor,
-          {.min = 0, .max = 2, .above_min = true, .help = "of the shortest capillary wave's time"});
+          {.min = 0, .max = 2, .above_min = true, .help = "longest step, in shortest capillary times"});
+  v.value("position_correction", p.position_correction,
+          {.min = 0, .max = 1, .help = "part of the density error undone per step by moving particles without giving "
+                                       "them velocity; 0: the error fades through the velocity (pressure.density_time)"});
+  v.value("max_density_error", p.max_density_error,
+          {.min = 1e-6, .max = 0.1, .help = "mean relative density error that the correction may leave"});
   v.value("surface_tension", p.surface_tension, {.help = "surface tension and contact angle act"});
   v.group("viscosity", p.viscosity, "viscosity");
+  v.group("surface", p.surface, "surface tension and contact angle");
+  v.group("pressure", p.pressure, "incompressible pressure");
 }
 
 struct LiquidStepReport {
   Real step_s = 0;                // the step made
-  const char* bound = "";         // "convective", "acceleration", "viscous", "capillary" or "given"
-  int pressure_iterations = 0, divergence_iterations = 0, viscosity_iterations = 0;
-  Real density_error = 0;         // mean relative compression after the pressure solve
-  Real peak_density_error = 0;    // largest of one particle
-  Real divergence_error = 0;
+  const char* bound = "";         // "convective", "gravity", "capillary" or "given"
+  int pressure_iterations = 0;    // of the velocity
+  int divergence_iterations = 0;  // of the position correction
+  int viscosity_iterations = 0;   // 0: explicit
+  Real density_error = 0;         // mean |relative density error| at the start of the step
+  Real peak_density_error = 0;    // largest compression of one particle there
+  Real remaining_density_error = 0;  // mean that the position correction left, predicted
+  Real divergence_error = 0;      // mean relative compression per step that the projection left
+  std::size_t surface_particles = 0;
+  Vec3 surface_force{};           // N, net force of the curvature part
   Real max_speed = 0;             // m/s after the step
   std::size_t put_back = 0;       // particles the positional safety net moved
   bool converged = true;
   std::vector<Vec3> wall_impulse;  // N s given to each wall of the step
   // Wall-clock seconds per stage, for benchmarks.
   struct Times {
-    double sort = 0, lists = 0, walls = 0, density = 0, surface = 0, viscosity = 0, divergence = 0, pressure = 0,
-           move = 0;
+    double sort = 0, walls = 0, lists = 0, density = 0, viscosity = 0, surface = 0, pressure = 0, move = 0;
   } times;
 };
 
 // Work space kept between steps so that nothing is allocated; not state: results do not depend on it.
 struct LiquidScratch {
   LiquidFields fields;
+  SurfaceScratch surface;
 };
 
 struct LiquidStepBound {
   Real step_s = 0;
   const char* bound = "";
 };
+
+// The shortest capillary time sqrt(rho dx^3/(2 pi gamma)), s; infinite without surface tension.
+Real shortest_capillary_time(const Liquid& liquid, const LiquidParams& params);
 
 // The longest stable step now, and what holds it.
 LiquidStepBound liquid_step_bound(const Liquid& liquid, const LiquidParams& params, const Vec3& gravity);

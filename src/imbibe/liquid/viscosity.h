@@ -1,13 +1,16 @@
 // Viscosity of the liquid and friction at walls.
 //
-//   a_i = (eta/rho0) sum_j 10 V (u_ij . x_ij)/(r^2) grad W     (Monaghan & Cleary form, d + 2 = 5, times 2)
-//   u_ij = u_i - u_j [m/s], x_ij = x_i - x_j [m], eta dynamic viscosity [Pa s], V = m/rho0 [m3]
-//   Sources: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; Cleary & Monaghan, J. Comput. Phys. 148 (1999) 227.
-// Acts along the line of centres: linear and angular momentum are conserved to rounding.
-// Wall: the solid moves with zero velocity as the liquid's continuation; shear over the kernel-weighted distance:
-//   a_i = -friction (eta/rho0) 2 |G_i| u_t / max(d_i, dx/4)  with u_t tangential, weakly depends on kernel, see the test.
-// Stability: explicit for dt <= viscous_factor H^2 rho/eta; beyond, the stage runs implicit (viscosity.cpp).
-// Tested in tests/liquid/viscosity_test.cpp: momentum, decay of a shear wave, Couette start-up.
+//   a_i = nu sum_j 10 V (u_ij . x_ij)/r^2 grad W      (factor 2 (dim + 2) = 10)
+//   wall: a_i = -friction nu half_space_shear(d_i) u_t    the same sum over the solid, whose velocity continues the
+//         liquid's linearly through zero at the surface (kernel.h); u_t tangential
+//   u_ij = u_i - u_j [m/s], x_ij = x_i - x_j [m], nu = eta/rho0 [m2/s], eta dynamic viscosity [Pa s], V = m/rho0 [m3]
+// Sources: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543 (form along the line of centres); Cleary & Monaghan,
+// J. Comput. Phys. 148 (1999) 227; walls by linear continuation: Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214.
+// The pair force acts along the line of centres: linear and angular momentum are conserved to rounding. A free surface
+// is free of stress because nothing is there to sum over.
+// Stability: explicit for dt <= explicit_limit (H/2)^2/nu; a longer step is made implicitly, (1 - dt A) u = u_old, by
+// conjugate gradients (A is symmetric and negative), so viscosity never bounds the step.
+// Tested in tests/liquid/viscosity_test.cpp: momentum, decay of a shear wave, implicit against explicit, wall shear.
 #pragma once
 
 #include "imbibe/core/parameter.h"
@@ -37,6 +40,12 @@ struct ViscosityReport {
   int iterations = 0;  // 0: explicit
   bool converged = true;
 };
+
+// The rate coefficient of one pair, 1/s: a_i = -pair_rate x_ij (u_ij . x_ij)/r^2. slope = W'(r)/r <= 0.
+template <class T>
+T viscous_pair_rate(T viscosity_over_density, T volume, T slope) {
+  return -10 * viscosity_over_density * volume * slope;
+}
 
 // Changes f.velocity by viscosity over dt; impulse[wall] gets what friction gave to each wall, N s.
 ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, Real viscosity, Real dt,

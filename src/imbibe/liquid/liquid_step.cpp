@@ -1,0 +1,202 @@
+#include "imbibe/liquid/liquid_step.h"
+
+#include <chrono>
+
+#include "imbibe/core/error.h"
+#include "imbibe/liquid/damping.h"
+#include "imbibe/liquid/density.h"
+
+namespace imbibe {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Seconds since the last call.
+class StageTimer {
+ public:
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+// sqrt(g x height of the liquid): what a column of it reaches, and the speed at which particles under its pressure
+// change places.
+Real fall_speed(const Liquid& liquid, const Vec3& gravity) {
+  const std::vector<Float4>& x = liquid.particles.position;
+  const auto highest = [&](const Vec3& up) {
+    const Real lowest = -std::numeric_limits<Real>::infinity();
+    return parallel_max(x.size(), lowest, [&](std::size_t begin, std::size_t end) {
+      Real most = lowest;
+      for (std::size_t i = begin; i < end; ++i) most = std::max(most, dot(up, Vec3{x[i].x, x[i].y, x[i].z}));
+      return most;
+    });
+  };
+  return x.empty() ? 0 : std::sqrt(std::max(0.0, highest(gravity) + highest(-gravity)));
+}
+
+Real greatest_speed(std::span<const Float4> velocity) {
+  const float square = parallel_max(velocity.size(), 0.0f, [&](std::size_t begin, std::size_t end) {
+    float most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Float4& u = velocity[i];
+      const float s = u.x * u.x + u.y * u.y + u.z * u.z;
+      most = s <= most ? most : s;  // keeps a NaN
+    }
+    return most;
+  });
+  return std::sqrt(static_cast<Real>(square));
+}
+
+void kick(LiquidFields& f, const Vec3& gravity, Real dt) {
+  const Vec3f g(gravity);
+  const auto step = static_cast<float>(dt);
+  parallel_for(f.count, [&](std::size_t i) {
+    Float4& u = f.velocity[i];
+    const Float4& a = f.force[i];
+    u = {u.x + step * (g.x + a.x), u.y + step * (g.y + a.y), u.z + step * (g.z + a.z), 0};
+  });
+}
+
+// The displacement that would undo the density errors, as a velocity over dt in f.shift: the same projection as for the
+// velocity, for liquid at rest. It moves particles but is not part of their velocity, so it gives them no energy.
+PressureReport find_shift(LiquidFields& f, const LiquidParams& params, Real dt, std::vector<float>& warm) {
+  f.shift.swap(f.velocity);
+  f.velocity.assign(f.shift.size(), Float4{});
+  PressureParams goal = params.pressure;
+  goal.tolerance = params.max_density_error;
+  const PressureReport report = project_velocity(f, goal, dt, params.position_correction, warm);
+  f.shift.swap(f.velocity);
+  return report;
+}
+
+// Positions and results back into the particles. f.position still holds the positions before the move.
+void move(LiquidFields& f, Particles& p, Real dt, bool shifts) {
+  const auto step = static_cast<float>(dt);
+  constexpr float newest = 0.2f;  // of the averaged pressure: a few steps' memory
+  const float farthest = 0.2f * f.spacing;
+  parallel_for(f.count, [&](std::size_t i) {
+    const Float4 &x = f.position[i], &u = f.velocity[i];
+    Vec3f way = step * Vec3f{u.x, u.y, u.z};
+    if (shifts) {
+      const Vec3f shift = step * Vec3f{f.shift[i].x, f.shift[i].y, f.shift[i].z};
+      way += std::min(1.0f, farthest / std::max(norm(shift), 1e-30f)) * shift;
+    }
+    p.position[i] = {x.x + way.x, x.y + way.y, x.z + way.z, 0};
+    p.velocity[i] = {u.x, u.y, u.z, 0};
+    p.density[i] = f.filling[i] * f.rest_density;
+    p.pressure[i] += newest * (f.pressure[i] - p.pressure[i]);
+  });
+}
+
+// The time in which something can happen over one spacing: a density error that fades in a few of these neither builds
+// up under a flow nor heats the liquid by being kicked out at once.
+Real shortest_time(const Liquid& liquid, const LiquidParams& params, const Vec3& gravity) {
+  const Real dx = liquid.spacing(), speed = greatest_speed(liquid.particles.velocity);
+  Real shortest = shortest_capillary_time(liquid, params);
+  if (norm(gravity) > 0) shortest = std::min(shortest, std::sqrt(dx / norm(gravity)));
+  if (speed > 0) shortest = std::min(shortest, 2 * dx / speed);
+  return shortest;
+}
+
+}  // namespace
+
+Real shortest_capillary_time(const Liquid& liquid, const LiquidParams& params) {
+  if (!params.surface_tension || liquid.kind.surface_tension <= 0) return std::numeric_limits<Real>::infinity();
+  const Real dx = liquid.spacing();
+  return std::sqrt(liquid.kind.density * dx * dx * dx / (2 * pi * liquid.kind.surface_tension));
+}
+
+LiquidStepBound liquid_step_bound(const Liquid& liquid, const LiquidParams& params, const Vec3& gravity) {
+  const Real dx = liquid.spacing();
+  LiquidStepBound bound{std::numeric_limits<Real>::infinity(), "given"};
+  const auto limit = [&](Real step, const char* name) {
+    if (step < bound.step_s) bound = {step, name};
+  };
+  const Real speed = greatest_speed(liquid.particles.velocity);
+  if (speed > 0) limit(params.convective_factor * dx / speed, "convective");
+  if (norm(gravity) > 0) {
+    limit(params.convective_factor * dx / (fall_speed(liquid, gravity) + std::sqrt(norm(gravity) * dx)), "gravity");
+  }
+  limit(params.capillary_factor * shortest_capillary_time(liquid, params), "capillary");
+  return bound;
+}
+
+LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::span<const Wall> walls,
+                             const Vec3& gravity, Real max_step, LiquidScratch& scratch) {
+  LiquidStepReport report;
+  report.wall_impulse.assign(walls.size(), {});
+  LiquidStepBound bound = liquid_step_bound(liquid, params, gravity);
+  if (max_step < bound.step_s) bound = {max_step, "given"};
+  report.step_s = bound.step_s;
+  report.bound = bound.bound;
+  if (liquid.particles.size() == 0) return report;
+  IMBIBE_ASSERT(std::isfinite(bound.step_s) && bound.step_s > 0);
+
+  const Real dt = bound.step_s, capillary_time = shortest_capillary_time(liquid, params);
+  const bool tension = std::isfinite(capillary_time);
+  const LiquidKind& kind = liquid.kind;
+  LiquidFields& f = scratch.fields;
+  Particles& particles = liquid.particles;
+  StageTimer timer;
+
+  sort_particles(f.neighbours, particles, kernel_for(liquid.spacing()));
+  begin_fields(f, liquid);
+  report.times.sort = timer.lap();
+  sample_walls(f.boundary, f.position, f.count, walls, f.neighbours.kernel);
+  report.times.walls = timer.lap();
+  build_lists(f.neighbours, f.position, f.boundary.side);
+  report.times.lists = timer.lap();
+  compute_density(f);
+  report.times.density = timer.lap();
+
+  Real viscosity = kind.viscosity;
+  if (tension) {
+    viscosity +=
+        kind.density * numerical_viscosity(params.surface, kind.surface_tension, kind.density, liquid.spacing());
+  }
+  const ViscosityReport viscous = apply_viscosity(f, params.viscosity, viscosity, dt, report.wall_impulse);
+  report.viscosity_iterations = viscous.iterations;
+  if (tension) damp_small_scales(f, static_cast<float>(std::min(0.5, params.surface.damping * dt / capillary_time)));
+  report.times.viscosity = timer.lap();
+
+  const SurfaceReport surface = compute_surface(f, params.surface, tension ? kind.surface_tension : 0, walls, dt,
+                                                scratch.surface, particles.kind, report.wall_impulse);
+  report.surface_particles = surface.surface_particles;
+  report.surface_force = surface.net_force;
+  report.times.surface = timer.lap();
+
+  kick(f, gravity, dt);
+  const Real relaxation = dt / (params.pressure.density_time * shortest_time(liquid, params, gravity));
+  const bool shifts = params.position_correction > 0;
+  if (shifts) {
+    const PressureReport shift = find_shift(f, params, dt, particles.warm_divergence);
+    report.divergence_iterations = shift.iterations;
+    report.remaining_density_error = shift.residual;
+  }
+  const PressureReport pressure =
+      project_velocity(f, params.pressure, dt, shifts ? 0 : std::min(1.0, relaxation), particles.warm_pressure);
+  add_wall_impulse(f.boundary, f.wall_push, liquid.particle_mass * dt, report.wall_impulse);
+  report.pressure_iterations = pressure.iterations;
+  report.density_error = pressure.density_error;
+  report.peak_density_error = pressure.peak_density_error;
+  report.divergence_error = pressure.residual;
+  report.converged = pressure.converged && viscous.converged;
+  report.times.pressure = timer.lap();
+
+  move(f, particles, dt, shifts);
+  report.put_back = keep_outside(f.boundary, f.position, particles.position, particles.velocity, f.count, walls,
+                                 liquid.spacing(), liquid.particle_mass, report.wall_impulse);
+  report.max_speed = greatest_speed(particles.velocity);
+  if (!std::isfinite(report.max_speed)) throw NumericalError(0, 0, "liquid", "a velocity is not finite");
+  report.times.move = timer.lap();
+  return report;
+}
+
+}  // namespace imbibe
