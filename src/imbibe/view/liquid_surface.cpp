@@ -180,7 +180,7 @@ DrawnMesh liquid_surface(std::span<const Vec3f> particles, Real spacing, const L
   fill_field(grid, bins, heights, support);
   DrawnMesh mesh = surface_nets(grid, static_cast<float>(params.iso));
   relax(mesh, params.relaxations);
-  compute_normals(mesh);
+  compute_normals(mesh, params.normal_rounds);
   return mesh;
 }
 

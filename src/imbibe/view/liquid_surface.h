@@ -21,7 +21,8 @@ struct LiquidSurfaceParams {
   Real centre_smoothing = 0.6;  // a
   Real cell = 0.5;              // grid cell / spacing
   Real iso = 0.5;
-  int relaxations = 8;          // pairs of Taubin steps
+  int relaxations = 20;         // pairs of Taubin steps
+  int normal_rounds = 6;        // averagings of the normals
 };
 
 DrawnMesh liquid_surface(std::span<const Vec3f> particles, Real spacing, const LiquidSurfaceParams& params = {});

@@ -50,6 +50,7 @@ LookInput look_input(const Frame& frame, const Stage& stage, const PictureOption
   in.content_size = static_cast<float>(std::max(1e-6, std::max(bounds.size().x, bounds.size().y)));
   in.centre = Vec3f(bounds.centre());
   in.liquid_depth = static_cast<float>(liquid_depth(frame));
+  in.contact_gap = static_cast<float>(2 * frame.particle_spacing);
   in.pixel_angle = static_cast<float>(2 * camera.tan_half_height / options.height);
   return in;
 }

@@ -51,10 +51,29 @@ Vec3f mesh_normal(const DrawnMesh& mesh, const RTCHit& hit) {
   return normalized(mesh.normals[t[0]] * (1 - hit.u - hit.v) + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v);
 }
 
+struct Float4 {
+  float x, y, z, w;
+};
+
 struct SolidPart {
   DrawnMesh mesh;
   Vec3f colour;
 };
+
+// One cubic piece of a yarn: it spans some steps of the yarn's centre line.
+struct Piece {
+  Index first = 0, last = 0;  // points
+  Index yarn = 0;
+};
+
+// Points that a piece spans: pieces much shorter than the yarn is thick cost time and gain nothing.
+Index piece_steps(const DrawnYarns& y, std::size_t yarn, const std::vector<float>& along) {
+  const Index first = y.first_point[yarn], end = y.first_point[yarn + 1];
+  if (end - first < 3) return 1;
+  const float mean_step = along[end - 1] / static_cast<float>(end - first - 1);
+  const float wanted = 1.1f * y.radius[yarn] / std::max(mean_step, 1e-12f);
+  return static_cast<Index>(std::clamp(std::round(wanted), 1.0f, 4.0f));
+}
 
 }  // namespace
 
@@ -64,7 +83,7 @@ struct RayScene::Parts {
   Scene solids, liquid;
   std::vector<SolidPart> parts;
   DrawnMesh liquid_mesh;
-  std::vector<Index> piece_point, piece_yarn;  // of every straight piece of the yarns
+  std::vector<Piece> pieces;                   // of all yarns
   std::vector<Vec3f> tangent;                  // per yarn point
   std::vector<float> along;                    // per yarn point, m
   unsigned yarn_geometry = RTC_INVALID_GEOMETRY_ID;
@@ -73,7 +92,7 @@ struct RayScene::Parts {
   explicit Parts(const Frame& f);
   void prepare_yarns();
   void attach_yarns(unsigned id);
-  void yarn_hit(const RTCRayHit& found, const Ray& ray, SolidHit& hit) const;
+  void yarn_hit(const RTCRayHit& found, SolidHit& hit) const;
 };
 
 RayScene::Parts::Parts(const Frame& f) : frame(f) {
@@ -91,7 +110,7 @@ RayScene::Parts::Parts(const Frame& f) : frame(f) {
   for (unsigned i = 0; i < parts.size(); ++i) attach_mesh(device.get(), solids.get(), parts[i].mesh, i);
   if (frame.yarns.yarns() > 0) {
     prepare_yarns();
-    if (!piece_point.empty()) attach_yarns(static_cast<unsigned>(parts.size()));
+    if (!pieces.empty()) attach_yarns(static_cast<unsigned>(parts.size()));
   }
   if (!frame.particles.empty()) liquid_mesh = liquid_surface(frame.particles, frame.particle_spacing);
   if (!liquid_mesh.triangles.empty()) attach_mesh(device.get(), liquid.get(), liquid_mesh, 0);
@@ -120,56 +139,59 @@ void RayScene::Parts::prepare_yarns() {
       const Index before = i > first ? i - 1 : i, after = i + 1 < end ? i + 1 : i;
       tangent[i] = normalized(y.points[after] - y.points[before]);
       along[i] = i > first ? along[i - 1] + norm(y.points[i] - y.points[i - 1]) : 0;
-      if (i + 1 == end) continue;
-      piece_point.push_back(i);
-      piece_yarn.push_back(static_cast<Index>(yarn));
     }
+    const Index steps = piece_steps(y, yarn, along);
+    for (Index i = first; i + 1 < end; i += steps)
+      pieces.push_back({i, std::min(i + steps, end - 1), static_cast<Index>(yarn)});
   }
 }
 
+// Catmull-Rom curves with round cross-section through every few points of the centre line.
 void RayScene::Parts::attach_yarns(unsigned id) {
   const DrawnYarns& y = frame.yarns;
-  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                                                             4 * sizeof(float), y.points.size()));
-  for (std::size_t yarn = 0; yarn < y.yarns(); ++yarn)
-    for (Index i = y.first_point[yarn]; i < y.first_point[yarn + 1]; ++i) {
-      float* p = points + 4 * static_cast<std::size_t>(i);
-      p[0] = y.points[i].x, p[1] = y.points[i].y, p[2] = y.points[i].z, p[3] = y.radius[yarn];
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE);
+  // Controls of a yarn: one before its start, the ends of its pieces, one after its end.
+  const std::size_t controls = pieces.size() + 3 * y.yarns();
+  auto* control = static_cast<Float4*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                                              sizeof(Float4), controls));
+  auto* start = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                                                              sizeof(unsigned), pieces.size()));
+  std::size_t n = 0;
+  const auto put = [&](const Vec3f& p, float radius) { control[n++] = {p.x, p.y, p.z, radius}; };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& piece = pieces[i];
+    const float radius = y.radius[piece.yarn];
+    const Vec3f &p = y.points[piece.first], &q = y.points[piece.last];
+    if (i == 0 || pieces[i - 1].yarn != piece.yarn) {
+      put(p - (q - p), radius);
+      put(p, radius);
     }
-  auto* pieces = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
-                                                                sizeof(unsigned), piece_point.size()));
-  // No neighbour flags: pieces shorter than their radius would be cut wrongly; as whole capsules their union is right.
-  std::copy(piece_point.begin(), piece_point.end(), pieces);
+    start[i] = static_cast<unsigned>(n - 2);
+    put(q, radius);
+    if (i + 1 == pieces.size() || pieces[i + 1].yarn != piece.yarn) put(q + (q - p), radius);
+  }
+  while (n < controls) put({}, 0);  // yarns of one point have no piece
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(solids.get(), geometry, id);
   rtcReleaseGeometry(geometry);
   yarn_geometry = id;
 }
 
-void RayScene::Parts::yarn_hit(const RTCRayHit& found, const Ray& ray, SolidHit& hit) const {
+void RayScene::Parts::yarn_hit(const RTCRayHit& found, SolidHit& hit) const {
   const DrawnYarns& y = frame.yarns;
-  const Index piece = found.hit.primID, p = piece_point[piece], yarn = piece_yarn[piece];
-  const float u = std::clamp(found.hit.u, 0.0f, 1.0f);
-  const Vec3f at = ray.origin + ray.direction * found.ray.tfar;
-  const Vec3f centre = y.points[p] * (1 - u) + y.points[p + 1] * u;
+  const Piece& piece = pieces[found.hit.primID];
+  const float place = std::clamp(found.hit.u, 0.0f, 1.0f) * static_cast<float>(piece.last - piece.first);
+  const Index p = std::min(piece.first + static_cast<Index>(place), piece.last - 1);
+  const float u = place - static_cast<float>(p - piece.first);
   hit.yarn = true;
+  hit.normal = hit.flat_normal;
   hit.axis = normalized(tangent[p] * (1 - u) + tangent[p + 1] * u);
-  hit.radius = y.radius[yarn];
-  hit.colour = y.colour[yarn];
+  hit.radius = y.radius[piece.yarn];
+  hit.colour = y.colour[piece.yarn];
   hit.saturation = y.saturation[p] * (1 - u) + y.saturation[p + 1] * u;
   hit.along = along[p] * (1 - u) + along[p + 1] * u;
-  // The straight pieces' own normals would show every joint; take them from the smooth axis, but not on end caps.
-  Vec3f normal = hit.flat_normal;
-  const bool cap = (p == y.first_point[yarn] && found.hit.u <= 0) || (p + 2 == y.first_point[yarn + 1] && found.hit.u >= 1);
-  if (!cap) {
-    const Vec3f out = at - centre;
-    const Vec3f across = out - hit.axis * dot(out, hit.axis);
-    if (squared_norm(across) > 0) normal = normalized(across);
-  }
-  hit.normal = facing(normal, ray.direction);
   const Vec3f side = normalized(cross(hit.axis, Vec3f(frame.up))), face = cross(side, hit.axis);
-  hit.around = std::atan2(dot(normal, side), dot(normal, face));
+  hit.around = std::atan2(dot(hit.normal, side), dot(hit.normal, face));
 }
 
 RayScene::RayScene(const Frame& frame) : parts_(new Parts(frame)) {}
@@ -187,7 +209,7 @@ bool RayScene::meets_solid(const Ray& ray, float limit, SolidHit& hit) const {
   hit.distance = found.ray.tfar;
   hit.flat_normal = facing(normalized(Vec3f{found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}), ray.direction);
   if (found.hit.geomID == parts_->yarn_geometry) {
-    parts_->yarn_hit(found, ray, hit);
+    parts_->yarn_hit(found, hit);
   } else {
     const SolidPart& part = parts_->parts[found.hit.geomID];
     hit.normal = facing(mesh_normal(part.mesh, found.hit), ray.direction);

@@ -236,6 +236,7 @@ Look look_for(const LookInput& in) {
   look.content_size = in.content_size;
   look.centre = in.centre;
   look.pixel_angle = in.pixel_angle;
+  look.contact_gap = in.contact_gap;
   Vec3f ahead = normalized(Vec3f{in.forward.x, in.forward.y, 0});
   if (squared_norm(ahead) < 0.5f) ahead = normalized(cross(Vec3f{0, 0, 1}, in.right));
   const float depth = std::max(in.liquid_depth, 1e-6f);
@@ -248,8 +249,8 @@ Look look_for(const LookInput& in) {
     look.sky_horizon = look.sky_up;
     look.returned = Vec3f{0.13f, 0.13f, 0.14f};
     look.ground = Vec3f{1, 1, 1} / (0.62f + 0.50f * look.to_light.z);
-    look.water_absorption = Vec3f{1.25f, 0.62f, 0.16f} / depth;
-    look.water_scattered = Vec3f{0.10f, 0.30f, 0.72f};
+    look.water_absorption = Vec3f{1.05f, 0.50f, 0.16f} / depth;
+    look.water_scattered = Vec3f{0.22f, 0.47f, 0.86f};
   } else {
     // A studio: a large soft light behind the left of the subject, a cool sky, a warm table.
     look.to_light = normalized(in.right * -0.62f + ahead * 0.55f + Vec3f{0, 0, 1.0f});
@@ -287,9 +288,12 @@ Vec3f radiance(const RayScene& scene, const Look& look, const Ray& first, const 
       }
       share *= 1 - reflectance;
     }
-    ray.direction = look.style == PictureStyle::diagram ? ray.direction : bend.refracted;
+    // Water that ends just above a solid lies on it: particles leave a gap there that is not air.
+    const bool touching = !water.entering && met_solid && limit - water.distance < look.contact_gap;
+    const bool straight = look.style == PictureStyle::diagram || touching;
+    if (!straight) ray.direction = bend.refracted;
     ray.origin = at + ray.direction * scene.skin();
-    const bool inside = water.entering || (look.style == PictureStyle::natural && bend.reflectance >= 1);
+    const bool inside = water.entering || (!straight && bend.reflectance >= 1);
     if (!inside) continue;
     // The way through the water up to its far side or to what stands in it.
     SolidHit end_solid;

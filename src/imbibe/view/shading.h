@@ -24,6 +24,7 @@ struct Look {
   Vec3f water_absorption;         // 1/m
   Vec3f water_scattered;          // radiance that replaces absorbed light in a diagram
   float pixel_angle = 1e-3f;      // rad
+  float contact_gap = 0;          // m, water nearer than this to a solid touches it
 };
 
 struct LookInput {
@@ -34,6 +35,7 @@ struct LookInput {
   Vec3f centre;
   float liquid_depth = 1e-3f;     // m, typical way of light through the liquid
   float pixel_angle = 1e-3f;
+  float contact_gap = 0;          // m
 };
 Look look_for(const LookInput& input);
 

@@ -209,7 +209,7 @@ void relax(DrawnMesh& mesh, int pairs) {
   }
 }
 
-void compute_normals(DrawnMesh& mesh) {
+void compute_normals(DrawnMesh& mesh, int rounds) {
   mesh.normals.assign(mesh.vertices.size(), Vec3f{});
   for (const auto& t : mesh.triangles) {
     const Vec3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -217,6 +217,17 @@ void compute_normals(DrawnMesh& mesh) {
     for (const Index v : t) mesh.normals[v] += area;
   }
   for (Vec3f& n : mesh.normals) n = normalized(n);
+  if (rounds <= 0) return;
+  const Adjacency adjacency = adjacency_of(mesh);
+  std::vector<Vec3f> smoothed(mesh.normals.size());
+  for (int round = 0; round < rounds; ++round) {
+    parallel_for(mesh.normals.size(), [&](std::size_t v) {
+      Vec3f sum = mesh.normals[v];
+      for (Index n = adjacency.start[v]; n < adjacency.start[v + 1]; ++n) sum += mesh.normals[adjacency.neighbour[n]];
+      smoothed[v] = normalized(sum);
+    });
+    mesh.normals.swap(smoothed);
+  }
 }
 
 }  // namespace imbibe

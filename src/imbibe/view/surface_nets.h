@@ -46,6 +46,7 @@ BlockGrid block_grid(std::vector<std::uint64_t> keys, const Vec3& origin, Real c
 DrawnMesh surface_nets(const BlockGrid& grid, float iso);
 
 void relax(DrawnMesh& mesh, int pairs);
-void compute_normals(DrawnMesh& mesh);
+// Area-weighted, then averaged over neighbours `rounds` times: highlights show the shape, not the particles.
+void compute_normals(DrawnMesh& mesh, int rounds = 0);
 
 }  // namespace imbibe
