@@ -1,6 +1,6 @@
 // Liquid between the fibres of a yarn: permeability, suction, and the three laws of transport along it.
 //
-// physical    q = T (Psi_i - Psi_j) - T k_r(up) rho g dz,  T = K_a pi r^2/(eta l)
+// physical    q = T [Psi(p_i - rho g dz/2) - Psi(p_j + rho g dz/2)],  T = K_a pi r^2/(eta l),  dz = z_j - z_i
 //     Gebart:       K_a = (8 R_f^2/53) eps^3/phi^2 / tau^2,  K_t = 0.231 R_f^2 (sqrt(0.9069/phi) - 1)^(5/2) / tau^2
 //     suction:      P_h = gamma cos(theta_a + alpha) 2 phi/(R_f eps),  P_e = P_h 0.5^(1/lambda)
 //     Brooks-Corey: P_c = P_e s^(-1/lambda),  k_r = s^(3 + 2/lambda)

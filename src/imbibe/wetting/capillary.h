@@ -3,7 +3,7 @@
 //   throat       r_t = w_x w_y/(w_x + w_y);  P_e = 2 gamma cos(theta)/r_t;  P_c = P_e s^(-1/lambda_p), lambda_p = 2
 //   from a face  q = pi r_t^4/(8 eta x) (p_liq + P_e - rho g x),  x = s t      (an empty pore fills as its throat's tube)
 //   yarn - pore  q = T f [Psi_y(p_yarn) - Psi_y(p_pore)],  1/T = 1/T_lat + 2 r/(w T_along),
-//                T_lat = K_t 0.4 pi r l/(eta r) on each of 4 pores,  f = sqrt(max(s_pore, 0.01))
+//                T_lat = K_t 0.4 pi r l/(eta r) on each of 4 pores,  f = sqrt(max(s_pore, 1e-4))
 //   pore - pore  q = T [max(p_a - P_open, 0) - max(p_b - P_open, 0)],  T = 2 w h^3/(3 eta pitch),  h = (t - 2r)/2
 //   tube alone   x dx/dt = r^2/(8 eta) (p + P_e - rho g x)                      Washburn; with gravity Fries & Dreyer
 //   as_printed   D = D* + R U/(48 D), read implicitly: D = D*/2 + sqrt(D*^2/4 + R U/48)        seed A eq. 10
@@ -12,6 +12,8 @@
 // Pores are open at both faces. As closed tubes between each other they would wick ten times too fast, so a link in the
 // plane is a valve that opens only when the meniscus bulges over the yarn between (p > P_open), gravity inside the same
 // function. The axial part in series keeps liquid from hopping yarn - pore - yarn past the yarn's own resistance.
+// f: corner menisci wet the walls of a pore as the root of its content. A floor of 0.01 would let liquid cross a dry pore
+// from one hydrophilic yarn to the next beside hydrophobic ones.
 // Source: Washburn 1921; Fries & Dreyer, J. Colloid Interface Sci. 320 (2008) 259, eq. 16; the links are derived.
 // Tested in tests/wetting/capillary_test.cpp and one_tube_test.cpp (Jurin, Washburn, Fries-Dreyer within 1 %).
 #pragma once

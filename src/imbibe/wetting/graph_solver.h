@@ -5,11 +5,12 @@
 // Stops at `tolerance` times the right-hand side, or at `floor` absolute: with a relative test alone a system at rest
 // (right-hand side zero) would iterate on rounding. Blocks are fixed, sums are added tile by tile: the same bits for
 // any number of threads.
-// Newton: a saturation moves by at most 0.3, stays above 0 by shrinking, and lands at the kink s = 1 (where the slope
+// Newton: a saturation moves by at most 0.3, stays above 0 by shrinking, does not run to and fro, and lands at the kink s = 1 (where the slope
 // of p(s) jumps by two orders) before it crosses.
 // Tested in tests/wetting/graph_solver_test.cpp against dense elimination.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -49,7 +50,7 @@ inline constexpr Real largest_newton_change = 0.3;
 inline constexpr Real kink_landing = 1e-3;
 
 // The saturation after Newton's `change`, by the rules above.
-constexpr Real damped_saturation(Real saturation, Real change) {
+constexpr Real limited_saturation(Real saturation, Real change) {
   Real next = saturation + (change > largest_newton_change    ? largest_newton_change
                             : change < -largest_newton_change ? -largest_newton_change
                                                               : change);
@@ -57,6 +58,15 @@ constexpr Real damped_saturation(Real saturation, Real change) {
   if (saturation > 1 && next < 1 - kink_landing) next = 1 - kink_landing;
   const Real least = 0.1 * saturation;
   return next > least ? next : least;
+}
+
+// As above; where the step would run back past `previous` (the iterate before), it goes to their geometric mean
+// instead: laws that are flat on one side of a bend and steep on the other would send Newton to and fro.
+inline Real damped_saturation(Real saturation, Real change, Real previous) {
+  const Real next = limited_saturation(saturation, change);
+  const bool turned = (saturation - previous) * (next - saturation) < 0;
+  const bool past = turned && (saturation < previous ? next >= previous : next <= previous);
+  return past && previous > 0 && saturation > 0 ? std::sqrt(saturation * previous) : next;
 }
 
 }  // namespace imbibe

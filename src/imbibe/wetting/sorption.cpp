@@ -12,7 +12,7 @@ RadialShells build_radial_shells(int count) {
   IMBIBE_ASSERT(count >= 2);
   RadialShells shells;
   shells.count = count;
-  // Borders r_i = 1 - (1 - i/n)^1.8: about ten times finer at the surface than in the core for n = 12.
+  // Borders r_i = 1 - (1 - i/n)^1.8: about ten times finer at the surface than in the core for n = 16.
   std::vector<Real> border(count + 1), centre(count);
   for (int i = 0; i <= count; ++i) border[i] = 1 - std::pow(1 - Real(i) / count, 1.8);
   for (int i = 0; i < count; ++i) centre[i] = 0.5 * (border[i] + border[i + 1]);

@@ -15,7 +15,7 @@ constexpr Real wet_saturation = 1e-7;     // a node above it belongs to the solv
 constexpr Real residual_tolerance = 1e-9; // of saturation
 constexpr int most_newton = 25;
 constexpr int most_linear = 400;
-constexpr Real driest_wall = 0.01;        // share of a dry pore's walls that its corners wet
+constexpr Real driest_wall = 1e-4;        // saturation whose corners wet the walls of a dry pore enough to begin
 constexpr std::size_t loop_tile = 1024;
 
 using Work = TransportWorkspace;
@@ -200,18 +200,6 @@ void printed_edge(const WettingModel& m, const Work& w, const WettingEdge& edge,
   local.slope_b = -local.factor * at_b.slope;
 }
 
-// Liquid running down inside a yarn: T k_r(upstream) rho g dx.
-void add_gravity(const WettingModel& m, const Work& w, Real head, Work::LocalEdge& local) {
-  if (head == 0 || m.params.model != TransportModel::physical) return;
-  const Index up = head > 0 ? local.a : local.b;
-  const Real s = w.saturation[up], index = m.size_index[w.active[up]];
-  const Real k = relative_permeability(s, index);
-  local.flow += local.factor * k * head;
-  if (s >= 1 || s <= driest) return;
-  const Real slope = local.factor * head * (3 + 2 / index) * k / s;
-  (head > 0 ? local.slope_a : local.slope_b) += slope;
-}
-
 void yarn_edge(const WettingModel& m, const Work& w, const WettingEdge& edge, Real head, Work::LocalEdge& local) {
   const Index a = local.a, b = local.b;
   const TransportModel law = m.params.model;
@@ -226,10 +214,12 @@ void yarn_edge(const WettingModel& m, const Work& w, const WettingEdge& edge, Re
     local.slope_b = x.slope_b * w.pressure_slope[b];
     return;
   }
-  if (m.params.hysteresis && law == TransportModel::physical) {
+  // Both pressures are carried to the middle of the link, so that a hanging column comes to rest exactly. Kuenzel's
+  // diffusivity knows no gravity.
+  if (law == TransportModel::physical && (m.params.hysteresis || head != 0)) {
     const Real index = m.size_index[w.active[a]];
-    const Sloped at_a = kirchhoff_potential(local.entry, index, w.pressure[a]);
-    const Sloped at_b = kirchhoff_potential(local.entry, index, w.pressure[b]);
+    const Sloped at_a = kirchhoff_potential(local.entry, index, w.pressure[a] + 0.5 * head);
+    const Sloped at_b = kirchhoff_potential(local.entry, index, w.pressure[b] - 0.5 * head);
     local.flow = local.factor * (at_a.value - at_b.value);
     local.slope_a = local.factor * at_a.slope * w.pressure_slope[a];
     local.slope_b = -local.factor * at_b.slope * w.pressure_slope[b];
@@ -238,7 +228,6 @@ void yarn_edge(const WettingModel& m, const Work& w, const WettingEdge& edge, Re
     local.slope_a = local.factor * w.potential_slope[a];
     local.slope_b = -local.factor * w.potential_slope[b];
   }
-  if (edge.kind == EdgeKind::along_yarn) add_gravity(m, w, head, local);
 }
 
 // a is the segment. The pore's pressure is carried to the segment's height.
@@ -390,6 +379,7 @@ Real assemble(const TransportInput& input, Work& w, bool with_matrix) {
 }
 
 bool newton(const TransportInput& input, Work& w, TransportResult& result) {
+  w.previous = w.saturation;
   for (int iteration = 0; iteration < most_newton; ++iteration) {
     evaluate_all(input, w);
     const Real largest = assemble(input, w, true);
@@ -400,7 +390,9 @@ bool newton(const TransportInput& input, Work& w, TransportResult& result) {
     result.linear_iterations += solve.iterations;
     if (!std::isfinite(solve.residual)) return false;
     for (std::size_t i = 0; i < w.active.size(); ++i) {
-      w.saturation[i] = damped_saturation(w.saturation[i], -w.change[i]);
+      const Real next = damped_saturation(w.saturation[i], -w.change[i], w.previous[i]);
+      w.previous[i] = w.saturation[i];
+      w.saturation[i] = next;
     }
   }
   return false;

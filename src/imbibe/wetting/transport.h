@@ -53,7 +53,7 @@ struct TransportWorkspace {
   std::vector<Index> local_of;          // per node: its place in `active`, or no_index
   std::vector<char> is_seed;
   std::vector<Index> active;
-  std::vector<Real> volume, old_content, old_saturation, saturation, pressure, pressure_slope, potential,
+  std::vector<Real> volume, old_content, old_saturation, saturation, previous, pressure, pressure_slope, potential,
       potential_slope, release, release_slope, residual, change, reached, scale;
   std::vector<LocalEdge> edges;
   std::vector<Index> row_start, row_edge, row_other;

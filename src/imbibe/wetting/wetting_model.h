@@ -55,7 +55,7 @@ struct WettingParams {
   SurfaceTemperature surface_temperature = SurfaceTemperature::isothermal;
   bool swelling = true;
   SorptionModel sorption = SorptionModel::linear;
-  int shells = 12;                       // radial shells of a fibre, sorption = shells
+  int shells = 16;                       // radial shells of a fibre, sorption = shells
   Real wetted_at = 0.1;                  // saturation from which all fibres of a segment are wetted
   Real redistribution_factor = 0.1;      // Kuenzel: D_ww / D_ws once nothing supplies the cloth
   Real printed_pore_velocity = 1e-3;     // m/s, U of eq. 10 as printed
