@@ -23,14 +23,14 @@ namespace imbibe {
 
 struct YarnSpec {
   std::string fibre = "cotton";
-  std::optional<Real> diameter;              // m
-  std::optional<Real> linear_density;        // kg/m
-  std::optional<Real> packing;               // 1
-  std::optional<Real> density;               // 1/m, yarns per length across the family; only of warp and weft
+  std::optional<Real> diameter{};             // m
+  std::optional<Real> linear_density{};       // kg/m
+  std::optional<Real> packing{};              // 1
+  std::optional<Real> density{};              // 1/m, yarns per length across the family; only of warp and weft
   bool monofilament = false;
-  std::optional<Real> fibre_radius;          // m; otherwise the fibre file's
+  std::optional<Real> fibre_radius{};         // m; otherwise the fibre file's
   Real tortuosity_squared = 4;
-  std::optional<Real> absorption_coefficient;  // kg/(m2 s^0.5)
+  std::optional<Real> absorption_coefficient{}; // kg/(m2 s^0.5)
   Vec3 colour{0.93, 0.91, 0.86};             // linear RGB, dry
 };
 
