@@ -33,7 +33,7 @@ namespace imbibe {
 struct LiquidParams {
   Real convective_factor = 0.4;      // step <= factor dx/|u|max, and factor for |a|
   Real capillary_factor = 0.5;       // step <= factor sqrt(rho dx^3/(2 pi gamma))
-  Real position_correction = 1;      // part of the density error undone per step by moving particles; 0: by velocity
+  Real position_correction = 0.5;     // part of the density error undone per step by moving particles; 0: by velocity
   Real max_density_error = 1e-3;     // mean relative error that this correction may leave
   bool surface_tension = true;
   ViscosityParams viscosity;
