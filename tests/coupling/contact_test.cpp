@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/fabric/tube_mesh.h"
 #include "imbibe/geometry/curve.h"
 #include "imbibe/geometry/sampling.h"
 #include "support/small_weave.h"
@@ -205,6 +206,23 @@ TEST(Contact, TrianglesGiveTheAnswerOfTheRoundYarnWithinTheMeshsDeviation) {
   }
   EXPECT_GT(both, 250);
   EXPECT_LT(only_round, both / 20);  // grazing paths
+}
+
+TEST(Contact, TheTrianglesAreThoseOfTheFabricsTubeMesh) {
+  const YarnNetwork network = small_weave();
+  for (const Index segment : {Index{13}, Index{148}}) {  // a warp's and a weft's, away from the ends
+    const TriangleMesh tube = segment_tube(network, segment, {.sides = tube_sides});
+    std::size_t t = 0;
+    visit_segment_triangles(
+        network, network.segment_yarn[segment], segment, [](const Bounds&) { return true; },
+        [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+          ASSERT_LT(t, tube.triangles.size());
+          // Rounding of coordinates of some millimetres.
+          EXPECT_LT(norm(a - tube.corner(t, 0)) + norm(b - tube.corner(t, 1)) + norm(c - tube.corner(t, 2)), 1e-17);
+          ++t;
+        });
+    EXPECT_EQ(t, tube.triangles.size());
+  }
 }
 
 // --- the rules for a particle that touches already -------------------------------------------------------------------

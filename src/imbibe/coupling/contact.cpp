@@ -132,7 +132,11 @@ void sweep_triangles(const Query& q, Index yarn, Index segment, Real reach, Best
   visit_segment_triangles(q.network, yarn, segment, passes, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
     ++q.counts.triangles;
     // Direction first (seed A). At a convex edge one of its two triangles faces the particle.
-    if (dot(cross(b - a, c - a), q.path.step) >= 0) return;
+    const Vec3 outward = cross(b - a, c - a);
+    if (dot(outward, q.path.step) >= 0) return;
+    // Then the plane: the path must come down to `reach` over it, and begin no deeper than that below it.
+    const Real shell = reach * norm(outward), end_height = dot(end - a, outward), height = dot(q.path.from - a, outward);
+    if (end_height > shell || height < -shell) return;
     const auto swept = sweep_triangle(q.path.from, end, reach, a, b, c);
     if (!swept || swept->time_fraction > best.latest || dot(swept->normal, q.path.step) >= 0) return;
     const Vec3 at = q.path.at(swept->time_fraction);

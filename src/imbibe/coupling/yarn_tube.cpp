@@ -8,6 +8,18 @@
 namespace imbibe {
 namespace {
 
+struct Direction {
+  Real cosine, sine;
+};
+const std::array<Direction, tube_sides> corner_directions = [] {
+  std::array<Direction, tube_sides> directions;
+  for (int k = 0; k < tube_sides; ++k) {
+    const Real angle = 2 * pi * k / tube_sides;
+    directions[static_cast<std::size_t>(k)] = {std::cos(angle), std::sin(angle)};
+  }
+  return directions;
+}();
+
 // A crimped yarn lies in a plane across the other family; a frame beside that plane's normal never twists.
 Vec3 plane_normal_of(const YarnNetwork& network, Index yarn) {
   return network.yarn_family[yarn] == Family::weft ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
@@ -27,10 +39,9 @@ std::array<Vec3, tube_sides> tube_ring(const YarnNetwork& network, Index yarn, I
   const CrossFrame frame = frame_beside(tangent_at(points, point - first), plane_normal_of(network, yarn));
   const Real radius = radius_of_yarn(network, yarn);
   std::array<Vec3, tube_sides> ring;
-  for (int k = 0; k < tube_sides; ++k) {
-    const Real angle = 2 * pi * k / tube_sides;
-    ring[static_cast<std::size_t>(k)] =
-        network.points[point] + radius * (std::cos(angle) * frame.side + std::sin(angle) * frame.up);
+  for (std::size_t k = 0; k < tube_sides; ++k) {
+    const auto [cosine, sine] = corner_directions[k];
+    ring[k] = network.points[point] + radius * (cosine * frame.side + sine * frame.up);
   }
   return ring;
 }
