@@ -137,6 +137,9 @@ void sweep_triangles(const Query& q, Index yarn, Index segment, Real reach, Best
     // Then the plane: the path must come down to `reach` over it, and begin no deeper than that below it.
     const Real shell = reach * norm(outward), end_height = dot(end - a, outward), height = dot(q.path.from - a, outward);
     if (end_height > shell || height < -shell) return;
+    Bounds box;
+    box.include(a), box.include(b), box.include(c);
+    if (!passes(box)) return;
     const auto swept = sweep_triangle(q.path.from, end, reach, a, b, c);
     if (!swept || swept->time_fraction > best.latest || dot(swept->normal, q.path.step) >= 0) return;
     const Vec3 at = q.path.at(swept->time_fraction);
