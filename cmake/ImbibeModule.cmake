@@ -39,7 +39,7 @@ function(imbibe_test_folders)
     add_executable(${target} ${sources})
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
     target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR}/tests)
-    if(TARGET imbibe_${folder})
+    if(TARGET imbibe_${folder} AND NOT folder STREQUAL "cli")  # imbibe_cli is the command itself
       target_link_libraries(${target} PRIVATE imbibe_${folder})
     else()
       target_link_libraries(${target} PRIVATE imbibe_sim imbibe_scene imbibe_io imbibe_view)
