@@ -148,6 +148,11 @@ TEST(Fabric, StripesReplaceTheirYarnsAndRepeat) {
     const bool striped = net.yarn_family[y] == Family::warp && y >= 2 && (y - 2) % 6 < 2;
     EXPECT_EQ(net.yarn_types[net.yarn_type[y]].fibre.name, striped ? "polyester" : "wool") << y;
   }
+  // A stripe that repeats does not begin before its first yarn.
+  spec.stripes[0].first = 9;
+  spec.stripes[0].repeat = 3;
+  const YarnNetwork late = built(spec).network;
+  for (Index y = 0; y < 20; ++y) EXPECT_EQ(late.yarn_type[y] == 2, y >= 8 && (y - 8) % 3 < 2) << y;
   spec.stripes[0].first = 0;
   spec.stripes[0].repeat = 1;
   spec.stripes[0].yarn.fibre = "poly";
