@@ -5,7 +5,20 @@
 namespace imbibe {
 namespace {
 const Real ln_1000 = std::log(Real(1000));
+
+// x^power; by squaring where the power is a small whole number, as 3 lambda + 1 is for whole lambda (this is called
+// for every link between yarn and pore in every Newton iteration).
+Real raised_to(Real x, Real power) {
+  const int whole = power <= 64 ? static_cast<int>(power) : 0;
+  if (static_cast<Real>(whole) != power) return std::pow(x, power);
+  Real result = 1;
+  for (int bits = whole; bits > 0; bits >>= 1, x *= x) {
+    if (bits & 1) result *= x;
+  }
+  return result;
 }
+
+}  // namespace
 
 Real axial_permeability(Real fibre_radius, Real packing, Real tortuosity_squared) {
   const Real voids = 1 - packing;
@@ -47,7 +60,7 @@ Sloped kirchhoff_potential(Real entry, Real size_index, Real pressure) {
   const Real power = 3 * size_index + 1;
   if (pressure >= -entry) return {entry / power + (pressure + entry), 1};
   const Real ratio = entry / -pressure;
-  const Real raised = std::pow(ratio, power);
+  const Real raised = raised_to(ratio, power);
   return {entry * raised / power, raised * ratio};
 }
 
