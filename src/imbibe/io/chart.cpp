@@ -98,16 +98,16 @@ std::string frame_svg(const Chart& chart, const Axis& x, const Axis& y, const st
   std::string svg;
   for (const Real tick : y_ticks) {
     const Real at = y.place(tick);
-    svg += fmt::format("<line class=\"grid\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", left, width - right, at,
-                       at);
+    svg += fmt::format("<line class=\"grid\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", left, width - right,
+                       at, at);
     svg += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", left - 7, at + 4,
                        tick_text(tick, chart.logarithmic));
   }
   for (const Real tick : x_ticks) {
     if (tick < x.lower - 1e-12 || tick > x.upper * (1 + 1e-9)) continue;
     const Real at = x.place(tick);
-    svg += fmt::format("<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\"/>", at, at, height - bottom,
-                       height - bottom + 4);
+    svg += fmt::format("<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\"/>", at, at,
+                       height - bottom, height - bottom + 4);
     svg += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", at,
                        height - bottom + 17, tick_text(tick, false));
   }
@@ -115,16 +115,18 @@ std::string frame_svg(const Chart& chart, const Axis& x, const Axis& y, const st
                      height - bottom, height - bottom);
   svg += fmt::format("<text class=\"name\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                      (left + width - right) / 2, height - 6, with_unit(chart.x_name, chart.x_unit));
-  svg += fmt::format("<text class=\"name\" transform=\"translate(13 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                     (top + height - bottom) / 2, with_unit(chart.y_name, chart.y_unit));
+  svg +=
+      fmt::format("<text class=\"name\" transform=\"translate(13 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                  (top + height - bottom) / 2, with_unit(chart.y_name, chart.y_unit));
   return svg;
 }
 
 std::string legend_html(const Chart& chart) {
   std::string html = "<ul class=\"legend\">";
   for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-    html += fmt::format("<li><svg class=\"swatch\" viewBox=\"0 0 22 8\"><path class=\"curve c{}\" d=\"M0 4L22 4\"/></svg>{}",
-                        i + 1, html_escaped(chart.curves[i].name));
+    html += fmt::format(
+        "<li><svg class=\"swatch\" viewBox=\"0 0 22 8\"><path class=\"curve c{}\" d=\"M0 4L22 4\"/></svg>{}", i + 1,
+        html_escaped(chart.curves[i].name));
     if (!chart.curves[i].last_value.empty()) html += " <b>" + html_escaped(chart.curves[i].last_value) + "</b>";
     html += "</li>";
   }
@@ -137,12 +139,23 @@ std::string html_escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -169,21 +182,29 @@ AxisUnit axis_unit(Real largest, const std::string& si) {
     if (largest >= 1e-3 || largest == 0) return {1e-3, "g"};
     return largest >= 1e-6 ? AxisUnit{1e-6, "mg"} : AxisUnit{1e-9, "µg"};
   }
-  if (si == "m") return largest >= 1 ? AxisUnit{1, "m"} : largest >= 1e-4 || largest == 0 ? AxisUnit{1e-3, "mm"} : AxisUnit{1e-6, "µm"};
-  if (si == "m2") return largest >= 1 ? AxisUnit{1, "m²"} : largest >= 1e-3 ? AxisUnit{1e-4, "cm²"} : AxisUnit{1e-6, "mm²"};
+  if (si == "m")
+    return largest >= 1                      ? AxisUnit{1, "m"}
+           : largest >= 1e-4 || largest == 0 ? AxisUnit{1e-3, "mm"}
+                                             : AxisUnit{1e-6, "µm"};
+  if (si == "m2")
+    return largest >= 1 ? AxisUnit{1, "m²"} : largest >= 1e-3 ? AxisUnit{1e-4, "cm²"} : AxisUnit{1e-6, "mm²"};
   if (si == "s") {
     if (largest >= 2 * 86400) return {3600, "h"};
     if (largest >= 3 * 3600) return {3600, "h"};
     if (largest >= 300) return {60, "min"};
-    return largest >= 0.5 || largest == 0 ? AxisUnit{1, "s"} : largest >= 5e-4 ? AxisUnit{1e-3, "ms"} : AxisUnit{1e-6, "µs"};
+    return largest >= 0.5 || largest == 0 ? AxisUnit{1, "s"}
+           : largest >= 5e-4              ? AxisUnit{1e-3, "ms"}
+                                          : AxisUnit{1e-6, "µs"};
   }
   return {1, si};
 }
 
 std::string chart_html(const Chart& chart) {
   const std::string title = html_escaped(chart.title);
-  std::string html = fmt::format("<figure class=\"chart\"><figcaption>{}</figcaption>\n{}\n", title, legend_html(chart));
-  if (chart.x.size() < 2) return html + "<p class=\"nothing\">Fewer than two rows so far: nothing to draw.</p></figure>\n";
+  std::string html =
+      fmt::format("<figure class=\"chart\"><figcaption>{}</figcaption>\n{}\n", title, legend_html(chart));
+  if (chart.x.size() < 2)
+    return html + "<p class=\"nothing\">Fewer than two rows so far: nothing to draw.</p></figure>\n";
 
   const Range range = range_of(chart);
   Axis x{chart.x.front() / chart.x_unit.size, chart.x.back() / chart.x_unit.size, left, width - right, false};
@@ -197,7 +218,8 @@ std::string chart_html(const Chart& chart) {
   }
   const Axis y{y_ticks.front(), y_ticks.back(), height - bottom, top, chart.logarithmic};
 
-  html += fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n", width, height, title);
+  html +=
+      fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n", width, height, title);
   html += frame_svg(chart, x, y, x_ticks, y_ticks);
   if (chart.limit > 0) {
     const Real at = y.place(chart.limit / chart.y_unit.size);

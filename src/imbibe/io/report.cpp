@@ -99,7 +99,8 @@ std::string key_figures(const RunRecord& r) {
   html += tile("Wetted area", scaled_text(r.last("wet_area_m2"), "m2"),
                fmt::format("yarns above {:.3g} % saturation", 100 * r.number("wet_saturation")));
   html += tile("Stain, warp × weft",
-               fmt::format("{:.1f} × {:.1f} mm", 1e3 * r.last("wet_extent_warp_m"), 1e3 * r.last("wet_extent_weft_m")));
+               fmt::format("{:.1f} × {:.1f} mm", 1e3 * r.last("wet_extent_warp_m"),
+                           1e3 * r.last("wet_extent_weft_m")));
   html += tile("Saturation of the yarns", fmt::format("{:.1f} %", 100 * r.last("mean_saturation")),
                fmt::format("mean of the whole cloth; largest of a node {:.1f} %", 100 * r.last("max_saturation")));
   html += tile("Balance of the liquid", fmt::format("{:.1e}", r.largest("ledger_error")),
@@ -153,8 +154,8 @@ std::string charts(const RunRecord& r) {
   masses.y_unit = axis_unit(most, "kg");
   if (!sorbed.values.empty()) sorbed.last_value = scaled_text(sorbed.values.back(), "kg");
 
-  const Chart area = series_chart(r, "Wetted area", "area", "m2",
-                                  {{"wet_area_m2", "wet yarns"}, {"wet_pore_area_m2", "wet pores"}});
+  const Chart area =
+      series_chart(r, "Wetted area", "area", "m2", {{"wet_area_m2", "wet yarns"}, {"wet_pore_area_m2", "wet pores"}});
   const std::vector<ColumnCurve> directions{{"wet_extent_warp_m", "along the warp"},
                                             {"wet_extent_weft_m", "along the weft"}};
   const Chart extent = series_chart(r, "Extent of the stain", "extent", "m", directions);
@@ -170,7 +171,8 @@ std::string charts(const RunRecord& r) {
   for (Curve& curve : saturation.curves) {
     if (!curve.values.empty()) curve.last_value = fmt::format("{:.1f} %", 100 * curve.values.back());
   }
-  Chart ledger = series_chart(r, "Balance of the liquid", "relative error", "", {{"ledger_error", "|parts − supplied|"}});
+  Chart ledger =
+      series_chart(r, "Balance of the liquid", "relative error", "", {{"ledger_error", "|parts − supplied|"}});
   ledger.logarithmic = true;
   ledger.limit = 1e-10;
   ledger.limit_name = "limit 1e-10";
@@ -192,7 +194,8 @@ std::string picture_section(const RunRecord& r) {
     html += fmt::format("<video controls preload=\"metadata\" src=\"film.mp4\"{}></video>\n",
                         all.empty() ? "" : " poster=\"" + html_escaped(all.back()) + "\"");
   } else {
-    html += fmt::format("<img class=\"hero\" src=\"{}\" alt=\"the last picture of the run\">\n", html_escaped(all.back()));
+    html +=
+        fmt::format("<img class=\"hero\" src=\"{}\" alt=\"the last picture of the run\">\n", html_escaped(all.back()));
   }
   const std::size_t shown = std::min<std::size_t>(6, all.size());
   if (shown > 1) {
@@ -247,10 +250,12 @@ std::string balance_section(const RunRecord& r) {
 std::string repeat_section(const RunRecord& r) {
   std::string html = "<section><h2>To repeat it</h2>\n";
   html += fmt::format("<pre class=\"command\">{}</pre>\n", html_escaped(r.text("command")));
-  html += "<p>The scene with all defaults written out is <a href=\"scene.yaml\">scene.yaml</a>; the same version gives "
-          "the same state number below, whatever the number of threads.</p>\n<table>\n";
+  html +=
+      "<p>The scene with all defaults written out is <a href=\"scene.yaml\">scene.yaml</a>; the same version gives "
+      "the same state number below, whatever the number of threads.</p>\n<table>\n";
   html += row("state", r.text("state_hash")) + row("version", r.text("version"));
-  html += row("seed", fmt::format("{:.0f}", r.number("seed"))) + row("threads", fmt::format("{:.0f}", r.number("threads")));
+  html +=
+      row("seed", fmt::format("{:.0f}", r.number("seed"))) + row("threads", fmt::format("{:.0f}", r.number("threads")));
   html += row("started", r.text("started_at"));
   if (r.run.contains("machine") && r.run["machine"].is_object()) {
     const Json& m = r.run["machine"];
@@ -285,9 +290,10 @@ std::string file_section(const RunRecord& r) {
 
 std::string status_line(const RunRecord& r) {
   const std::string status = r.text("status"), reason = r.text("reason");
-  std::string line = status == "done" ? "Finished" : status == "running" ? "Still running, or stopped without a word"
-                     : status == "interrupted"                           ? "Interrupted"
-                                                                         : "Failed";
+  std::string line = status == "done"          ? "Finished"
+                     : status == "running"     ? "Still running, or stopped without a word"
+                     : status == "interrupted" ? "Interrupted"
+                                               : "Failed";
   if (!reason.empty()) line += ": " + reason;
   return fmt::format("<p class=\"status {}\">{}</p>\n", html_escaped(status), html_escaped(line));
 }
@@ -297,8 +303,9 @@ std::string status_line(const RunRecord& r) {
 std::string report_html(const fs::path& folder) {
   const RunRecord r = read_run(folder);
   const std::string title = html_escaped(r.text("title").empty() ? folder.filename().string() : r.text("title"));
-  std::string html = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   html += "<title>" + title + "</title>\n<style>" + report_style + "</style></head>\n<body><main>\n";
   html += "<header><p class=\"kind\">Imbibe, simulated</p><h1>" + title + "</h1>\n" + status_line(r) + "</header>\n";
   html += "<section>" + key_figures(r) + "</section>\n";

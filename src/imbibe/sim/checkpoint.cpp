@@ -78,6 +78,11 @@ struct Stored<Float4> {
   using Number = float;
 };
 template <>
+struct Stored<bool> {
+  static constexpr hsize_t columns = 1;
+  using Number = std::uint8_t;
+};
+template <>
 struct Stored<ParticleClass> {
   static constexpr hsize_t columns = 1;
   using Number = std::uint8_t;
@@ -141,6 +146,12 @@ class ReadVisitor {
   explicit ReadVisitor(hid_t file) : file_(file) {}
 
   void group(const std::string& name) { path_ = name + "/"; }
+
+  void value(const char* name, bool& x) {
+    std::uint8_t number = 0;
+    value(name, number);
+    x = number != 0;
+  }
 
   template <class T>
   void value(const char* name, T& x) {

@@ -37,6 +37,13 @@ void visit_state(Visitor& v, AnyWorld& world) {
   v.value("evaporated_kg", world.ledger.evaporated_kg);
   v.value("left_kg", world.ledger.left_kg);
 
+  v.group("pace");
+  v.value("wetting_interval", world.pace.wetting_interval);
+  v.value("since_wetting", world.pace.since_wetting);
+  v.value("resting", world.pace.resting);
+  v.value("calm_since", world.pace.calm_since);
+  v.value("particles_at_rest", world.pace.particles_at_rest);
+
   v.group("liquid");
   v.value("particle_mass", world.liquid.particle_mass);
   v.value("next_id", world.liquid.next_id);
