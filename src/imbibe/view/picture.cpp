@@ -1,6 +1,7 @@
 #include "imbibe/view/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "imbibe/core/error.h"
@@ -37,18 +38,14 @@ Real liquid_depth(const Frame& frame) {
 }
 
 LookInput look_input(const Frame& frame, const Stage& stage, const PictureOptions& options) {
-  Bounds bounds = bounds_of_cloth(frame);
-  if (bounds.empty()) bounds = bounds_of_liquid(frame);
-  if (bounds.empty()) bounds = bounds_of_solids(frame);
-  if (bounds.empty()) bounds.include(Vec3{});
   const Camera& camera = stage.camera;
   LookInput in;
   in.style = options.style;
   in.right = Vec3f(camera.right);
   in.forward = Vec3f(camera.forward);
   in.ground_height = static_cast<float>(stage.ground);
-  in.content_size = static_cast<float>(std::max(1e-6, std::max(bounds.size().x, bounds.size().y)));
-  in.centre = Vec3f(bounds.centre());
+  in.content_size = static_cast<float>(stage.content_size);
+  in.centre = Vec3f(stage.centre);
   in.liquid_depth = static_cast<float>(liquid_depth(frame));
   in.contact_gap = static_cast<float>(2 * frame.particle_spacing);
   in.pixel_angle = static_cast<float>(2 * camera.tan_half_height / options.height);
@@ -66,7 +63,8 @@ float rolled_off(float x) {
   return x <= knee ? x : knee + (1 - knee) * (1 - std::exp(-(x - knee) / (1 - knee)));
 }
 
-Vec3f pixel_light(const RayScene& scene, const Look& look, const Camera& camera, const PictureOptions& options, int x, int y) {
+Vec3f pixel_light(const RayScene& scene, const Look& look, const Camera& camera, const PictureOptions& options, int x, int y,
+                  std::vector<Index>& touched) {
   const std::uint64_t pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(options.width) + static_cast<std::uint64_t>(x);
   Vec3f sum{};
   float sum_shown = 0, sum_squares = 0;
@@ -75,7 +73,7 @@ Vec3f pixel_light(const RayScene& scene, const Look& look, const Camera& camera,
     const PixelSamples samples(pixel, static_cast<std::uint32_t>(n));
     const Pair at = samples.pair(for_position);
     const Vec3 direction = direction_through(camera, (x + 0.5 + tent(at.u)) / options.width, (y + 0.5 + tent(at.v)) / options.height);
-    Vec3f light = radiance(scene, look, {Vec3f(camera.eye), Vec3f(direction)}, samples);
+    Vec3f light = radiance(scene, look, {Vec3f(camera.eye), Vec3f(direction)}, samples, touched);
     // A single bright sample would stay as a speck.
     const float brightest = std::max({light.x, light.y, light.z});
     if (brightest > 6) light *= 6 / brightest;
@@ -111,6 +109,56 @@ void store(Image& image, int x, int y, Vec3f light, const PictureOptions& option
   }
 }
 
+// Squares of the picture that water or its shadow can reach: those under every particle and under its way along the
+// light down to the ground.
+class WaterReach {
+ public:
+  WaterReach(const Stage& stage, const PictureOptions& options, int columns, int rows)
+      : stage_(stage), options_(options), columns_(columns), rows_(rows),
+        reached_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0) {}
+
+  void include(const Vec3& particle, Real radius, const Look& look) {
+    const Vec3 to_light(look.to_light);
+    const Real fall = std::max(0.0, particle.z + radius - stage_.ground) / std::max(0.05, to_light.z);
+    // The light is a disc: its shadow widens with the way.
+    const Real wide = radius + 1.1 * look.light_size * fall;
+    mark({spot(particle, radius), spot(particle - fall * to_light, wide)});
+  }
+  const std::vector<char>& squares() const { return reached_; }
+
+ private:
+  struct Spot {
+    ImagePoint at;
+    Real radius = 0;  // px
+    bool behind = false;
+  };
+  Spot spot(const Vec3& p, Real radius) const {
+    const ImagePoint at = project(stage_.camera, p);
+    const Real depth = at.depth - radius;
+    if (depth <= 0) return {at, 0, true};
+    return {at, 2 + 1.2 * radius / (depth * stage_.camera.tan_half_height) * options_.height / 2, false};
+  }
+  void mark(const std::array<Spot, 2>& spots) {
+    if (spots[0].behind || spots[1].behind) return std::fill(reached_.begin(), reached_.end(), char{1}), void();
+    Real x0 = 1e30, x1 = -1e30, y0 = 1e30, y1 = -1e30;
+    for (const Spot& s : spots) {
+      const Real x = s.at.x * options_.width, y = s.at.y * options_.height;
+      x0 = std::min(x0, x - s.radius), x1 = std::max(x1, x + s.radius);
+      y0 = std::min(y0, y - s.radius), y1 = std::max(y1, y + s.radius);
+    }
+    const auto square = [](Real pixel, int count) { return static_cast<int>(std::clamp(std::floor(pixel / tile), 0.0, count - 1.0)); };
+    if (x1 < 0 || y1 < 0 || x0 > options_.width || y0 > options_.height) return;
+    for (int y = square(y0, rows_); y <= square(y1, rows_); ++y)
+      for (int x = square(x0, columns_); x <= square(x1, columns_); ++x)
+        reached_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)] = 1;
+  }
+
+  const Stage& stage_;
+  const PictureOptions& options_;
+  int columns_, rows_;
+  std::vector<char> reached_;
+};
+
 }  // namespace
 
 Stage stage_for(std::span<const Frame* const> frames, const PictureOptions& options) {
@@ -122,7 +170,11 @@ Stage stage_for(std::span<const Frame* const> frames, const PictureOptions& opti
     content.insert(content.end(), points.begin(), points.end());
     ground = std::min(ground, ground_of(*frame, options.style));
   }
-  return {camera_for(content, options), ground};
+  Bounds bounds = bounds_of_cloth(*frames[0]);
+  if (bounds.empty()) bounds = bounds_of_liquid(*frames[0]);
+  if (bounds.empty()) bounds = bounds_of_solids(*frames[0]);
+  if (bounds.empty()) bounds.include(Vec3{});
+  return {camera_for(content, options), ground, bounds.centre(), std::max({1e-6, bounds.size().x, bounds.size().y})};
 }
 
 Stage stage_for(const Frame& frame, const PictureOptions& options) {
@@ -134,20 +186,87 @@ Image draw_picture(const Frame& frame, const PictureOptions& options) {
   return draw_picture(frame, stage_for(frame, options), options);
 }
 
-Image draw_picture(const Frame& frame, const Stage& stage, const PictureOptions& options) {
-  IMBIBE_ASSERT(options.width > 0 && options.height > 0 && options.samples > 0);
-  const RayScene scene(frame);
-  const Look look = look_for(look_input(frame, stage, options));
-  Image image(options.width, options.height);
-  const int columns = (options.width + tile - 1) / tile, rows = (options.height + tile - 1) / tile;
-  parallel_for(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), [&](std::size_t t) {
-    const int x0 = static_cast<int>(t) % columns * tile, y0 = static_cast<int>(t) / columns * tile;
-    for (int y = y0; y < std::min(y0 + tile, options.height); ++y)
-      for (int x = x0; x < std::min(x0 + tile, options.width); ++x)
-        store(image, x, y, pixel_light(scene, look, stage.camera, options, x, y), options);
-  }, 1);
-  if (options.legend && options.style == PictureStyle::diagram) draw_overlay(image, frame, stage.camera, stage.ground);
+struct PictureSeries::State {
+  Stage stage;
+  PictureOptions options;
+  int columns, rows;
+  RayScene scene;
+  Image bare;                               // the last picture without lettering
+  std::vector<std::uint8_t> shown;          // of every yarn point in the last picture
+  std::vector<std::vector<Index>> touched;  // yarn points that went into each square, sorted
+  std::vector<char> wet;                    // squares that water could reach in the last picture
+  std::size_t traced = 0;
+
+  State(Stage s, PictureOptions o)
+      : stage(std::move(s)), options(std::move(o)), columns((options.width + tile - 1) / tile),
+        rows((options.height + tile - 1) / tile), bare(options.width, options.height),
+        touched(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
+
+  std::vector<std::size_t> squares_to_trace(const std::vector<std::uint8_t>& now, const std::vector<char>& wet_now, bool still) const;
+  void trace(std::size_t square, const Look& look);
+};
+
+std::vector<std::size_t> PictureSeries::State::squares_to_trace(const std::vector<std::uint8_t>& now,
+                                                                const std::vector<char>& wet_now, bool still) const {
+  std::vector<std::size_t> squares;
+  for (std::size_t t = 0; t < touched.size(); ++t) {
+    const bool same = still && !wet[t] && !wet_now[t] &&
+                      std::all_of(touched[t].begin(), touched[t].end(), [&](Index p) { return shown[p] == now[p]; });
+    if (!same) squares.push_back(t);
+  }
+  return squares;
+}
+
+void PictureSeries::State::trace(std::size_t square, const Look& look) {
+  const int x0 = static_cast<int>(square) % columns * tile, y0 = static_cast<int>(square) / columns * tile;
+  std::vector<Index>& points = touched[square];
+  points.clear();
+  for (int y = y0; y < std::min(y0 + tile, options.height); ++y)
+    for (int x = x0; x < std::min(x0 + tile, options.width); ++x) {
+      store(bare, x, y, pixel_light(scene, look, stage.camera, options, x, y, points), options);
+      // Kept short as it grows: neighbouring pixels see the same few points.
+      if (points.size() > 4096) std::sort(points.begin(), points.end()), points.erase(std::unique(points.begin(), points.end()), points.end());
+    }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+PictureSeries::PictureSeries(Stage stage, PictureOptions options) : state_(new State(std::move(stage), std::move(options))) {
+  IMBIBE_ASSERT(state_->options.width > 0 && state_->options.height > 0 && state_->options.samples > 0);
+}
+PictureSeries::~PictureSeries() = default;
+PictureSeries::PictureSeries(PictureSeries&&) noexcept = default;
+
+Real PictureSeries::traced_share() const {
+  return static_cast<Real>(state_->traced) / static_cast<Real>(state_->touched.size());
+}
+
+Image PictureSeries::draw(const Frame& frame) {
+  State& s = *state_;
+  const Look look = look_for(look_input(frame, s.stage, s.options));
+  // Colours come from what is shown of a saturation, so that a hidden difference cannot make two pictures differ.
+  Frame drawn = frame;
+  std::vector<std::uint8_t> now(frame.yarns.saturation.size());
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    now[i] = shown_saturation(s.options.style, frame.yarns.saturation[i]);
+    drawn.yarns.saturation[i] = shown_value(s.options.style, now[i]);
+  }
+  const bool still = s.scene.update(drawn);
+  WaterReach reach(s.stage, s.options, s.columns, s.rows);
+  for (const Vec3f& p : frame.particles) reach.include(Vec3(p), 2.5 * frame.particle_spacing, look);
+  const std::vector<std::size_t> squares = s.squares_to_trace(now, reach.squares(), still);
+  parallel_for(squares.size(), [&](std::size_t i) { s.trace(squares[i], look); }, 1);
+  s.traced = squares.size();
+  s.shown = std::move(now);
+  s.wet = reach.squares();
+
+  Image image = s.bare;
+  if (s.options.legend && s.options.style == PictureStyle::diagram) draw_overlay(image, frame, s.stage.camera, s.stage.ground);
   return image;
+}
+
+Image draw_picture(const Frame& frame, const Stage& stage, const PictureOptions& options) {
+  return PictureSeries(stage, options).draw(frame);
 }
 
 }  // namespace imbibe

@@ -78,9 +78,11 @@ Index piece_steps(const DrawnYarns& y, std::size_t yarn, const std::vector<float
 }  // namespace
 
 struct RayScene::Parts {
-  const Frame& frame;
   Device device;
   Scene solids, liquid;
+  DrawnYarns yarns;
+  std::vector<DrawnSolid> drawn_solids;
+  Vec3f up{0, 0, 1};  // of the cloth
   std::vector<SolidPart> parts;
   DrawnMesh liquid_mesh;
   std::vector<Piece> pieces;                   // of all yarns
@@ -89,48 +91,61 @@ struct RayScene::Parts {
   unsigned yarn_geometry = RTC_INVALID_GEOMETRY_ID;
   float skin = 1e-7f;
 
-  explicit Parts(const Frame& f);
+  Parts();
+  bool stands_still(const Frame& frame) const;
+  void build_solids();
+  void build_liquid(const Frame& frame);
   void prepare_yarns();
   void attach_yarns(unsigned id);
   void yarn_hit(const RTCRayHit& found, SolidHit& hit) const;
 };
 
-RayScene::Parts::Parts(const Frame& f) : frame(f) {
-  device.reset(rtcNewDevice(nullptr));
+RayScene::Parts::Parts() : device(rtcNewDevice(nullptr)) {
   if (!device) throw std::runtime_error("pictures: the ray tracing library does not start on this machine");
-  solids.reset(rtcNewScene(device.get()));
-  liquid.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(solids.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneFlags(liquid.get(), RTC_SCENE_FLAG_ROBUST);
+}
 
-  for (const DrawnSolid& solid : frame.solids) {
+bool RayScene::Parts::stands_still(const Frame& frame) const {
+  if (!solids || frame.solids.size() != drawn_solids.size() || frame.yarns.points != yarns.points ||
+      frame.yarns.first_point != yarns.first_point || frame.yarns.radius != yarns.radius ||
+      frame.yarns.colour != yarns.colour || frame.up != up)
+    return false;
+  // Solids are fixed in every scene; a frame that brings meshes of its own is drawn anew.
+  return std::all_of(frame.solids.begin(), frame.solids.end(), [&](const DrawnSolid& solid) {
+    const DrawnSolid& before = drawn_solids[static_cast<std::size_t>(&solid - frame.solids.data())];
+    return solid.mesh.triangles.empty() && before.mesh.triangles.empty() && solid.shape.index() == before.shape.index() &&
+           bounds_of(solid.shape).lower == bounds_of(before.shape).lower &&
+           bounds_of(solid.shape).upper == bounds_of(before.shape).upper && solid.colour == before.colour;
+  });
+}
+
+void RayScene::Parts::build_solids() {
+  parts.clear(), pieces.clear();
+  solids.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(solids.get(), RTC_SCENE_FLAG_ROBUST);
+  for (const DrawnSolid& solid : drawn_solids) {
     DrawnMesh mesh = solid.mesh.triangles.empty() ? mesh_of(solid.shape) : solid.mesh;
     if (!mesh.triangles.empty()) parts.push_back({std::move(mesh), solid.colour});
   }
   for (unsigned i = 0; i < parts.size(); ++i) attach_mesh(device.get(), solids.get(), parts[i].mesh, i);
-  if (frame.yarns.yarns() > 0) {
-    prepare_yarns();
-    if (!pieces.empty()) attach_yarns(static_cast<unsigned>(parts.size()));
-  }
-  if (!frame.particles.empty()) liquid_mesh = liquid_surface(frame.particles, frame.particle_spacing);
-  if (!liquid_mesh.triangles.empty()) attach_mesh(device.get(), liquid.get(), liquid_mesh, 0);
-  {
-    // Trees are built by one thread: then they, and with them the last bit of every hit, are always the same.
-    const ThreadLimit one(1);
-    rtcCommitScene(solids.get());
-    rtcCommitScene(liquid.get());
-  }
+  if (yarns.yarns() > 0) prepare_yarns();
+  yarn_geometry = RTC_INVALID_GEOMETRY_ID;
+  if (!pieces.empty()) attach_yarns(static_cast<unsigned>(parts.size()));
+  // Trees are built by one thread: then they, and with them the last bit of every hit, are always the same.
+  const ThreadLimit one(1);
+  rtcCommitScene(solids.get());
+}
 
-  Bounds all = bounds_of_cloth(frame);
-  all.include(bounds_of_solids(frame));
-  all.include(bounds_of_liquid(frame));
-  // Hits are float: their rounding grows with the scene's extent and its distance from the origin.
-  const Real extent = all.empty() ? 1 : norm(all.size()) + norm(all.centre());
-  skin = static_cast<float>(1e-5 * extent);
+void RayScene::Parts::build_liquid(const Frame& frame) {
+  liquid_mesh = frame.particles.empty() ? DrawnMesh{} : liquid_surface(frame.particles, frame.particle_spacing);
+  liquid.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(liquid.get(), RTC_SCENE_FLAG_ROBUST);
+  if (!liquid_mesh.triangles.empty()) attach_mesh(device.get(), liquid.get(), liquid_mesh, 0);
+  const ThreadLimit one(1);
+  rtcCommitScene(liquid.get());
 }
 
 void RayScene::Parts::prepare_yarns() {
-  const DrawnYarns& y = frame.yarns;
+  const DrawnYarns& y = yarns;
   tangent.resize(y.points.size());
   along.resize(y.points.size());
   for (std::size_t yarn = 0; yarn < y.yarns(); ++yarn) {
@@ -148,7 +163,7 @@ void RayScene::Parts::prepare_yarns() {
 
 // Catmull-Rom curves with round cross-section through every few points of the centre line.
 void RayScene::Parts::attach_yarns(unsigned id) {
-  const DrawnYarns& y = frame.yarns;
+  const DrawnYarns& y = yarns;
   RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE);
   // Controls of a yarn: one before its start, the ends of its pieces, one after its end.
   const std::size_t controls = pieces.size() + 3 * y.yarns();
@@ -178,7 +193,7 @@ void RayScene::Parts::attach_yarns(unsigned id) {
 }
 
 void RayScene::Parts::yarn_hit(const RTCRayHit& found, SolidHit& hit) const {
-  const DrawnYarns& y = frame.yarns;
+  const DrawnYarns& y = yarns;
   const Piece& piece = pieces[found.hit.primID];
   const float place = std::clamp(found.hit.u, 0.0f, 1.0f) * static_cast<float>(piece.last - piece.first);
   const Index p = std::min(piece.first + static_cast<Index>(place), piece.last - 1);
@@ -189,15 +204,39 @@ void RayScene::Parts::yarn_hit(const RTCRayHit& found, SolidHit& hit) const {
   hit.radius = y.radius[piece.yarn];
   hit.colour = y.colour[piece.yarn];
   hit.saturation = y.saturation[p] * (1 - u) + y.saturation[p + 1] * u;
+  hit.point = p;
+  hit.nearest = u < 0.5f ? p : p + 1;
+  hit.nearest_saturation = y.saturation[hit.nearest];
   hit.along = along[p] * (1 - u) + along[p + 1] * u;
-  const Vec3f side = normalized(cross(hit.axis, Vec3f(frame.up))), face = cross(side, hit.axis);
+  const Vec3f side = normalized(cross(hit.axis, up)), face = cross(side, hit.axis);
   hit.around = std::atan2(dot(hit.normal, side), dot(hit.normal, face));
 }
 
-RayScene::RayScene(const Frame& frame) : parts_(new Parts(frame)) {}
+RayScene::RayScene() : parts_(new Parts) {}
 RayScene::~RayScene() = default;
 bool RayScene::has_liquid() const { return !parts_->liquid_mesh.triangles.empty(); }
 float RayScene::skin() const { return parts_->skin; }
+
+bool RayScene::update(const Frame& frame) {
+  Parts& parts = *parts_;
+  const bool still = parts.stands_still(frame);
+  if (still) {
+    parts.yarns.saturation = frame.yarns.saturation;
+  } else {
+    parts.yarns = frame.yarns;
+    parts.drawn_solids = frame.solids;
+    parts.up = frame.up;
+    parts.build_solids();
+    Bounds all = bounds_of_cloth(frame);
+    all.include(bounds_of_solids(frame));
+    if (all.empty()) all = bounds_of_liquid(frame);
+    // Hits are float: their rounding grows with the scene's extent and its distance from the origin.
+    const Real extent = all.empty() ? 1 : norm(all.size()) + norm(all.centre());
+    parts.skin = static_cast<float>(1e-5 * extent);
+  }
+  parts.build_liquid(frame);
+  return still;
+}
 
 bool RayScene::meets_solid(const Ray& ray, float limit, SolidHit& hit) const {
   RTCIntersectContext context;

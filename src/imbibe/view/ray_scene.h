@@ -1,5 +1,6 @@
 // What rays can meet in a picture: yarns as round curves and solids in one Embree scene, the liquid's surface in
-// another (so that shadow rays choose whether water stops them). Lives as long as the picture is drawn.
+// another (so that shadow rays choose whether water stops them). From frame to frame of a film, cloth and solids that did
+// not move keep their trees.
 #pragma once
 
 #include <memory>
@@ -18,7 +19,10 @@ struct SolidHit {
   Vec3f flat_normal;  // of the geometry itself, same side
   bool yarn = false;
   Vec3f colour;       // linear RGB, dry
-  float saturation = 0;
+  float saturation = 0;   // interpolated
+  Index point = no_index; // of the yarns, the nearest before the hit; point + 1 is the nearest after it
+  Index nearest = no_index;
+  float nearest_saturation = 0;  // of the nearest point: one colour per segment
   // Yarns: where on the yarn, for the lie of its fibres.
   float along = 0;    // m from the yarn's start
   float around = 0;   // rad about the yarn's axis, 0 towards the cloth's face
@@ -34,10 +38,13 @@ struct LiquidHit {
 
 class RayScene {
  public:
-  explicit RayScene(const Frame& frame);
+  RayScene();
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
+
+  // Takes over the frame's contents; `frame` is not needed afterwards. True: yarns and solids stand where they stood.
+  bool update(const Frame& frame);
 
   bool meets_solid(const Ray& ray, float limit, SolidHit& hit) const;
   bool meets_liquid(const Ray& ray, float limit, LiquidHit& hit) const;

@@ -17,7 +17,8 @@ RunPictures::RunPictures(std::filesystem::path folder, PictureOptions options, s
 
 std::filesystem::path RunPictures::add(const Frame& frame, std::optional<int> number) {
   if (!stage_) stage_ = stage_for(frame, options_);
-  const Image image = draw_picture(frame, *stage_, options_);
+  if (!series_) series_ = std::make_unique<PictureSeries>(*stage_, options_);
+  const Image image = series_->draw(frame);
   const std::filesystem::path path = folder_ / "pictures" / fmt::format("picture_{:06}.png", number.value_or(count_));
   write_png(path, image);
   if (film_) film_->add(image);

@@ -26,6 +26,7 @@ class RunPictures {
   std::filesystem::path folder_;
   PictureOptions options_;
   std::optional<Stage> stage_;
+  std::unique_ptr<PictureSeries> series_;
   std::unique_ptr<FilmWriter> film_;
   int count_ = 0;
 };

@@ -147,14 +147,30 @@ void lay_fibres(const SolidHit& hit, float footprint, Surface& s) {
   s.colour *= (1 - valley * (1 - 0.4f * wet)) * (1 + 0.03f * noise_along(hit.along / (9 * hit.radius), 77));
 }
 
-Surface surface_of(const Look& look, const Ray& ray, const SolidHit& hit) {
+// What all rays of one camera sample share.
+struct Trace {
+  const RayScene& scene;
+  const Look& look;
+  const PixelSamples& samples;
+  std::vector<Index>& touched;
+};
+
+void touch(std::vector<Index>& touched, Index point) {
+  if (touched.empty() || touched.back() != point) touched.push_back(point);
+}
+
+Surface surface_of(const Trace& trace, const Ray& ray, const SolidHit& hit) {
+  const Look& look = trace.look;
   Surface s{ray.origin + ray.direction * hit.distance, hit.normal, hit.flat_normal, hit.colour, 0};
   if (!hit.yarn) return s;
   if (look.style == PictureStyle::diagram) {
-    const Vec3f shown = over(colour_of_saturation(hit.saturation), {1, 1, 1});
+    touch(trace.touched, hit.nearest);
+    const Vec3f shown = over(colour_of_saturation(hit.nearest_saturation), {1, 1, 1});
     s.colour = Vec3f{linear_from_srgb(shown.x), linear_from_srgb(shown.y), linear_from_srgb(shown.z)} * 0.97f;
     return s;
   }
+  touch(trace.touched, hit.point);
+  touch(trace.touched, hit.point + 1);
   s.colour = wet_colour(hit.colour, hit.saturation);
   s.gloss = smoothstep(0.15f, 1.0f, hit.saturation);
   lay_fibres(hit, hit.distance * look.pixel_angle, s);
@@ -179,12 +195,12 @@ Vec3f background(const Look& look, const Vec3f& direction) {
 }
 
 // Light along a ray that meets no water.
-Vec3f opaque_radiance(const RayScene& scene, const Look& look, const Ray& ray, const SolidHit* hit, float limit,
-                      const PixelSamples& samples, bool mirrored) {
-  if (hit) return shade(scene, look, surface_of(look, ray, *hit), ray.direction, samples);
+Vec3f opaque_radiance(const Trace& trace, const Ray& ray, const SolidHit* hit, float limit, bool mirrored) {
+  const Look& look = trace.look;
+  if (hit) return shade(trace.scene, look, surface_of(trace, ray, *hit), ray.direction, trace.samples);
   const float drop = look.ground_height - ray.origin.z;
   const float distance = ray.direction.z < -1e-6f ? drop / ray.direction.z : -1;
-  if (distance > 0 && distance < limit) return ground_seen(scene, look, ray, distance, samples);
+  if (distance > 0 && distance < limit) return ground_seen(trace.scene, look, ray, distance, trace.samples);
   return mirrored ? studio(look, ray.direction) : background(look, ray.direction);
 }
 
@@ -205,10 +221,10 @@ Bend bend_at(const Vec3f& direction, const LiquidHit& hit) {
   return bend;
 }
 
-Vec3f reflected_radiance(const RayScene& scene, const Look& look, const Ray& ray, const PixelSamples& samples) {
+Vec3f reflected_radiance(const Trace& trace, const Ray& ray) {
   SolidHit hit;
-  const bool met = scene.meets_solid(ray, far_away, hit);
-  return opaque_radiance(scene, look, ray, met ? &hit : nullptr, far_away, samples, true);
+  const bool met = trace.scene.meets_solid(ray, far_away, hit);
+  return opaque_radiance(trace, ray, met ? &hit : nullptr, far_away, true);
 }
 
 }  // namespace
@@ -266,7 +282,18 @@ Look look_for(const LookInput& in) {
   return look;
 }
 
-Vec3f radiance(const RayScene& scene, const Look& look, const Ray& first, const PixelSamples& samples) {
+std::uint8_t shown_saturation(PictureStyle style, float saturation) {
+  if (style == PictureStyle::diagram) return static_cast<std::uint8_t>(colour_level(saturation));
+  return static_cast<std::uint8_t>(std::lround(32 * std::clamp(saturation, 0.0f, 1.0f)));
+}
+
+float shown_value(PictureStyle style, std::uint8_t shown) {
+  return static_cast<float>(shown) / (style == PictureStyle::diagram ? 10.0f : 32.0f);
+}
+
+Vec3f radiance(const RayScene& scene, const Look& look, const Ray& first, const PixelSamples& samples,
+               std::vector<Index>& touched) {
+  const Trace trace{scene, look, samples, touched};
   Ray ray = first;
   Vec3f seen{}, share{1, 1, 1};
   for (int interface = 0; interface < most_interfaces; ++interface) {
@@ -277,14 +304,14 @@ Vec3f radiance(const RayScene& scene, const Look& look, const Ray& first, const 
     const bool met_water = scene.meets_liquid(ray, limit, water);
     // A solid, or the open, reached from inside the water: its way is taken off below, when the water's end is found.
     if (!met_water)
-      return seen + product(share, opaque_radiance(scene, look, ray, met_solid ? &solid : nullptr, far_away, samples, interface > 0));
+      return seen + product(share, opaque_radiance(trace, ray, met_solid ? &solid : nullptr, far_away, interface > 0));
     const Vec3f at = ray.origin + ray.direction * water.distance;
     const Bend bend = bend_at(ray.direction, water);
     if (water.entering) {
       const float reflectance = look.style == PictureStyle::diagram ? 0.8f * bend.reflectance : bend.reflectance;
       if (interface == 0) {
         const Ray mirror{at + water.normal * scene.skin(), bend.reflected};
-        seen += reflected_radiance(scene, look, mirror, samples) * reflectance;
+        seen += reflected_radiance(trace, mirror) * reflectance;
       }
       share *= 1 - reflectance;
     }

@@ -4,6 +4,8 @@
 // diagram it tints by the length of the way through it and does not bend the view, so that the cloth can be read.
 #pragma once
 
+#include <vector>
+
 #include "imbibe/scene/picture_options.h"
 #include "imbibe/view/pixel_samples.h"
 #include "imbibe/view/ray_scene.h"
@@ -39,7 +41,14 @@ struct LookInput {
 };
 Look look_for(const LookInput& input);
 
-Vec3f radiance(const RayScene& scene, const Look& look, const Ray& ray, const PixelSamples& samples);
+// `touched` collects the yarn points whose saturation went into the result (with repetitions).
+Vec3f radiance(const RayScene& scene, const Look& look, const Ray& ray, const PixelSamples& samples,
+               std::vector<Index>& touched);
+
+// What of a saturation is visible, as a small whole number: seed A's level in a diagram, steps of 1/32 in the natural
+// style. Pictures depend on saturations through this alone, so a film redraws only where it has changed.
+std::uint8_t shown_saturation(PictureStyle style, float saturation);
+float shown_value(PictureStyle style, std::uint8_t shown);
 
 // Share of light reflected by a smooth surface between media; `cosine` on the side of index n1. 1 = total reflection.
 float fresnel_reflectance(float cosine, float n1, float n2);
