@@ -47,7 +47,7 @@ Real greatest_speed(std::span<const Float4> velocity) {
     for (std::size_t i = begin; i < end; ++i) {
       const Float4& u = velocity[i];
       const float s = u.x * u.x + u.y * u.y + u.z * u.z;
-      most = s <= most ? most : s;  // keeps a NaN
+      most = std::max(most, std::isfinite(s) ? s : std::numeric_limits<float>::infinity());
     }
     return most;
   });
@@ -132,11 +132,13 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
                              const Vec3& gravity, Real max_step, LiquidScratch& scratch) {
   LiquidStepReport report;
   report.wall_impulse.assign(walls.size(), {});
-  LiquidStepBound bound = liquid_step_bound(liquid, params, gravity);
+  LiquidStepBound bound{max_step, "given"};
+  if (liquid.particles.size() > 0) bound = liquid_step_bound(liquid, params, gravity);
   if (max_step < bound.step_s) bound = {max_step, "given"};
   report.step_s = bound.step_s;
   report.bound = bound.bound;
   if (liquid.particles.size() == 0) return report;
+  if (bound.step_s == 0) throw NumericalError(0, 0, "liquid", "a velocity is not finite");
   IMBIBE_ASSERT(std::isfinite(bound.step_s) && bound.step_s > 0);
 
   const Real dt = bound.step_s, capillary_time = shortest_capillary_time(liquid, params);
