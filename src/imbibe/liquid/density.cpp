@@ -1,6 +1,9 @@
 #include "imbibe/liquid/density.h"
 
+#include <algorithm>
 #include <array>
+
+#include "imbibe/liquid/classes.h"
 
 namespace imbibe {
 
@@ -41,10 +44,16 @@ float air_completion(float gradient_h) {
   return table[k] + (place - static_cast<float>(k)) * (table[k + 1] - table[k]);
 }
 
-float density_error(float filling, float gradient_h) {
-  constexpr float spray = 0.55f, lowest = -0.05f;
-  if (filling <= spray) return std::max(0.0f, filling - 1);
-  return std::max(lowest, filling + air_completion(gradient_h) - 1);
+float density_error(float colour, float wall_lambda, float gradient_h) {
+  const float filling = colour + wall_lambda;
+  const float lowest = -0.05f * std::clamp((filling - 0.5f) / 0.15f, 0.0f, 1.0f);
+  if (lowest == 0) return std::max(0.0f, filling - 1);
+  const float open = std::max(1 - wall_lambda, 0.25f);  // deep in a wall (never for long): bounded
+  const float completed = std::max(lowest, filling - 1 + open * air_completion(gradient_h / open));
+  // At a contact line neither part is known: there only compression counts.
+  const float at_line = std::clamp((wall_lambda - 0.02f) / 0.1f, 0.0f, 1.0f) *
+                        std::clamp((gradient_h - surface_gradient_h) / 0.4f, 0.0f, 1.0f);
+  return completed + at_line * (std::max(0.0f, filling - 1) - completed);
 }
 
 void compute_density(LiquidFields& f) {
@@ -70,14 +79,17 @@ void compute_density(LiquidFields& f) {
       }
       const Floats4 wall = simd::load4(&f.boundary.wall[i]);
       const Floats colour = own + volume * kernel.value_scale * sum;
-      const Floats3 all{gradient.x + wall.x, gradient.y + wall.y, gradient.z + wall.z};
-      const Floats3 doubled{all.x + wall.x, all.y + wall.y, all.z + wall.z};
+      const Floats share = simd::min(colour / simd::max(1 - wall.w, 0.25f), 1.0f);
+      const Floats3 air{gradient.x + share * wall.x, gradient.y + share * wall.y, gradient.z + share * wall.z};
+      const Floats3 doubled{gradient.x + 2 * wall.x, gradient.y + 2 * wall.y, gradient.z + 2 * wall.z};
       simd::store(&f.colour[i], colour);
       simd::store(&f.filling[i], colour + wall.w);
-      simd::store4(&f.colour_gradient[i], gradient, kernel.support * simd::sqrt(simd::dot(all, all)));
+      simd::store4(&f.colour_gradient[i], gradient, kernel.support * simd::sqrt(simd::dot(air, air)));
       simd::store(&f.factor[i], 1 / (simd::dot(doubled, doubled) + square + tiny));
       const std::size_t last = std::min(i + lanes, f.count);
-      for (std::size_t p = i; p < last; ++p) f.density_error[p] = density_error(f.filling[p], f.colour_gradient[p].w);
+      for (std::size_t p = i; p < last; ++p) {
+        f.density_error[p] = density_error(f.colour[p], f.boundary.wall[p].w, f.colour_gradient[p].w);
+      }
     }
   });
 }

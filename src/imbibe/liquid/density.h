@@ -9,7 +9,11 @@
 // Air completion. A particle at a free surface misses neighbours, so its filling says nothing about its spacing. The
 // missing part is inferred from the colour gradient: a flat surface at depth d gives |n| = A(d) and misses lambda(d)
 // (both in kernel.h), so
-//   lambda_air = lambda(A^-1(|n_i + G_i|)),   c_i + lambda_air = 1 for an evenly spaced flat surface at ANY depth.
+//   lambda_a = lambda(A^-1(|grad lambda_a|)),   error e = (1 - lambda)(f + lambda_a - 1),   f = C/(1 - lambda)
+//   grad lambda_a = -(n + f G)/(1 - lambda), from C = (1 - lambda)(1 - lambda_a): wall and air share the kernel like
+//   half-spaces that cross at right angles
+// e = 0 for an evenly spaced flat surface at ANY depth. At a contact line, where wall and air meet at any angle, only
+// compression counts: e = max(0, C + lambda - 1). (Completed there as well, a 120 degree drop stood at 130 to 135.)
 // This gives surface particles a density that does not drift (without it a drop of water gains energy from its own
 // oscillation: docs/decisions/0002-surface-tension-in-the-incompressible-solver.md).
 // Assumes a surface flat over H; for a sphere of radius 8 dx the bias is below 1.5 % of the volume.
@@ -20,14 +24,14 @@
 
 namespace imbibe {
 
-// Fills f.colour, f.filling, f.colour_gradient (w: |n| H), f.factor and the slopes W'/r of the neighbour lists.
+// Fills f.colour, f.filling, f.colour_gradient (w: |n + f G| H), f.factor and f.density_error.
 void compute_density(LiquidFields& f);
 
-// lambda_air for gradient_h = |n| H.
+// lambda_a for gradient_h = |grad lambda_a| H.
 float air_completion(float gradient_h);
 
-// Relative density error of a particle: c + lambda_air - 1 where the completion can be trusted, at least -lowest;
-// max(0, c - 1) for spray (c < 0.55), which is free to be thin.
-float density_error(float filling, float gradient_h);
+// e from the colour C, the walls' lambda and |n + f G| H; at least -0.05. Spray (C + lambda < 0.5) is free to be thin:
+// max(0, C + lambda - 1) there.
+float density_error(float colour, float wall_lambda, float gradient_h);
 
 }  // namespace imbibe

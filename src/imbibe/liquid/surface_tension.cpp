@@ -38,6 +38,9 @@ struct Stage {
   }
 };
 
+// 0 below `from`, 1 above `to`: every switch of this stage is gradual, since a step in a force heats the liquid.
+float ramp(float value, float from, float to) { return std::clamp((value - from) / (to - from), 0.0f, 1.0f); }
+
 // Wetness of the wall of one sample: the kernel sum of i's neighbourhood at the foot point.
 float wetness_of(const Stage& t, std::size_t i, const WallSample& wall) {
   const Vec3f foot = wall.normal * wall.distance;  // x_i - x_F
@@ -46,6 +49,9 @@ float wetness_of(const Stage& t, std::size_t i, const WallSample& wall) {
   return wall_wetness(2 * sum, static_cast<float>(t.params.contact.wet_from),
                       static_cast<float>(t.params.contact.wet_to));
 }
+
+// 1 in the first layer of particles on a wall, 0 from the second on.
+float first_layer(float distance, float spacing) { return std::clamp(2 - distance / (0.8f * spacing), 0.0f, 1.0f); }
 
 // Colour gradient with wetted walls, filling, set S and the particle's class.
 void mark_surface(const Stage& t, std::size_t i, ParticleClass& kind) {
@@ -60,10 +66,12 @@ void mark_surface(const Stage& t, std::size_t i, ParticleClass& kind) {
   }
   const float length = norm(n), gradient_h = length * f.neighbours.kernel.support;
   const float filling = f.colour[i] + (1 - dry);
-  const float layer = std::clamp(2 - nearest / 0.8f, 0.0f, 1.0f);
+  const float layer = first_layer(nearest, 1);
   kind = particle_class(gradient_h, filling, nearest);
-  const bool reliable = kind == ParticleClass::liquid_vapour && f.colour[i] > 0.25f && layer < 0.5f;
-  f.surface[i] = reliable;
+  const float reliability = ramp(gradient_h, 0.2f, 0.4f) * ramp(-filling, -0.95f, -0.89f) *
+                            ramp(f.colour[i], 0.2f, 0.3f) * ramp(-layer, -0.6f, -0.4f);
+  t.s.reliability[i] = reliability;
+  f.surface[i] = reliability > 0;
   t.s.gradient[i] = {n.x, n.y, n.z, gradient_h};
   t.s.wet_filling[i] = filling;
   t.s.first_layer[i] = layer;
@@ -83,7 +91,7 @@ float fitted_curvature(const Stage& t, std::size_t i) {
     if (!f.surface[j]) return;
     const Vec3f other = xyz(t.s.normal[j]);
     if (dot(other, normal) <= 0) return;
-    const float near = std::max(0.0f, 1 - norm(to_here) * f.neighbours.kernel.inverse), w = near * near * near;
+    const float near = std::max(0.0f, 1 - norm(to_here) * f.neighbours.kernel.inverse), w = near * near * near * t.s.reliability[j];
     const float x = -dot(to_here, first), y = -dot(to_here, second);
     const float n1 = dot(other, first), n2 = dot(other, second);
     xx += w * x * x, xy += w * x * y, yy += w * y * y;
@@ -100,22 +108,23 @@ float fitted_curvature(const Stage& t, std::size_t i) {
 
 // Curvature off S by the kernel mean over S, and the drop a particle belongs to.
 void extend(const Stage& t, std::size_t i) {
-  t.s.owner[i] = no_index;
-  t.s.curvature[i] = 0;
-  if (t.f.surface[i]) {
-    t.s.owner[i] = static_cast<Index>(i);
-    t.s.curvature[i] = t.s.normal[i].w;
+  const float own = t.s.reliability[i];
+  t.s.owner[i] = own > 0 ? static_cast<Index>(i) : no_index;
+  t.s.curvature[i] = t.s.normal[i].w;
+  if (own == 1) return;
+  if (own == 0 && t.s.gradient[i].w < carries_force) {
+    t.s.curvature[i] = 0;
     return;
   }
-  if (t.s.gradient[i].w < carries_force) return;
   float sum = 0, weights = 0, heaviest = 0;
   each_neighbour(t.f, i, [&](Index j, const Vec3f& x) {
     if (!t.f.surface[j]) return;
-    const float w = t.weight(norm(x));
+    const float w = t.weight(norm(x)) * t.s.reliability[j];
     sum += w * t.s.normal[j].w, weights += w;
-    if (w > heaviest) heaviest = w, t.s.owner[i] = j;
+    if (own == 0 && w > heaviest) heaviest = w, t.s.owner[i] = j;
   });
-  if (weights > 1e-6f) t.s.curvature[i] = sum / weights;
+  const float mean = weights > 1e-6f ? sum / weights : t.s.curvature[i];
+  t.s.curvature[i] = own * t.s.curvature[i] + (1 - own) * mean;
 }
 
 // The interface as particle i, near the line, sees it: kernel means over reliable neighbours.
@@ -130,7 +139,7 @@ NearInterface near_interface(const Stage& t, std::size_t i, const WallSample& wa
   float weights = 0;
   const auto add = [&](std::size_t j, const Vec3f& to_here) {
     if (!t.f.surface[j]) return;
-    const float w = t.weight(norm(to_here));
+    const float w = t.weight(norm(to_here)) * t.s.reliability[j];
     seen.normal += xyz(t.s.normal[j]) * w;
     seen.curvature += w * t.s.normal[j].w;
     seen.height += w * (wall.distance - dot(to_here, wall.normal));
@@ -150,7 +159,7 @@ struct LinePull {
   float curvature = 0;
   Vec3f force{};        // N on the particle, along the wall
   float drag = 0;       // 1/s
-  bool active = false;
+  float activity = 0;   // 0..1
 };
 
 // Contact line at one wall (contact_angle.h). others: gradient of all other wetted walls.
@@ -158,11 +167,13 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall, float 
   LinePull pull;
   const LiquidFields& f = t.f;
   const float support = f.neighbours.kernel.support;
-  const float activity = std::clamp((f.colour[i] - 0.25f) / 0.1f, 0.0f, 1.0f);  // 0 for spray on the wall
   Vec3f along = xyz(f.colour_gradient[i]);
   along -= wall.normal * dot(along, wall.normal);
   const float length = norm(along), tau = length / std::max(1 - wall.lambda, 0.1f);
-  if (tau * support <= 0.3f || activity == 0 || f.filling[i] > 0.97f) return pull;
+  // 0 for spray on the wall (little colour), inside (filled) and where nothing points along the wall.
+  const float activity =
+      ramp(f.colour[i], 0.25f, 0.35f) * ramp(-f.filling[i], -0.97f, -0.93f) * ramp(tau * support, 0.2f, 0.4f);
+  if (activity == 0) return pull;
   const NearInterface seen = near_interface(t, i, wall);
   if (!seen.found) return pull;
   const Vec3f inward = along / length;
@@ -170,13 +181,13 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall, float 
   const float cosine =
       std::clamp(-(dot(seen.normal, wall.normal) + 0.5f * seen.height * kappa), -1.0f, 1.0f);
   const float sine = std::sqrt(1 - cosine * cosine);
-  pull.active = true;
+  pull.activity = activity;
   pull.normal = (inward * sine - wall.normal * cosine) * (tau / std::max(sine, 0.35f));
   pull.curvature = seen.curvature;
   const float strength = norm(wall.gradient);
   pull.force = inward * (-4 * t.gamma * strength * tau * f.volume * activity *
                          unbalanced_cosine(cosine, wall.cos_contact_angle, cos_receding));
-  pull.drag = static_cast<float>(t.params.contact.line_friction) * std::sqrt(t.gamma * f.spacing / f.rest_density) *
+  pull.drag = activity * static_cast<float>(t.params.contact.line_friction) * std::sqrt(t.gamma * f.spacing / f.rest_density) *
               strength / std::max(wall.distance, 0.3f * f.spacing);
   return pull;
 }
@@ -192,17 +203,14 @@ void force_on(const Stage& t, std::size_t i, std::span<const Wall> walls, Real d
   LiquidFields& f = t.f;
   Vec3f n = xyz(t.s.gradient[i]);
   float kappa = t.s.curvature[i];
-  const float layer = t.s.first_layer[i];
   Vec3f line{};
-  bool at_line = false;
   for (const WallSample& wall : f.boundary.samples(i)) {
     const LinePull pull = line_pull(t, i, wall, cos_receding(wall, walls));
-    if (!pull.active) continue;
+    const float w = first_layer(wall.distance, f.spacing);
+    n = n * (1 - w) + pull.normal * (w * pull.activity);
+    kappa = (1 - w * pull.activity) * kappa + w * pull.activity * pull.curvature;
+    if (pull.activity == 0) continue;
     line += pull.force;
-    const float w = std::clamp(2 - wall.distance / (0.8f * f.spacing), 0.0f, 1.0f);
-    n = n * (1 - w) + pull.normal * w;
-    kappa = (1 - w) * kappa + w * pull.curvature;
-    at_line = true;
     // Friction of the line, implicit so that it can only slow.
     Float4& u = f.velocity[i];
     const Vec3f v = xyz(u), tangential = v - wall.normal * dot(v, wall.normal);
@@ -211,7 +219,6 @@ void force_on(const Stage& t, std::size_t i, std::span<const Wall> walls, Real d
     u = {v.x - lost.x, v.y - lost.y, v.z - lost.z, 0};
     impulse[wall.wall] += Vec3(lost * f.particle_mass - pull.force * static_cast<float>(dt));
   }
-  if (!at_line) n = n * (1 - layer);
   const Vec3f a = (n * (2 * t.gamma * t.corrected(kappa)) + line / f.volume) / f.rest_density;
   f.force[i] = {a.x, a.y, a.z, 0};
   // Kept for the balance of free drops: the curvature part alone is wanted there, and away from walls it is all.
@@ -275,7 +282,7 @@ Vec3 balance_free_drops(const Stage& t) {
 void begin_scratch(SurfaceScratch& s, std::size_t count) {
   s.gradient.resize(count), s.normal.resize(count);
   s.curvature.resize(count), s.wet_filling.resize(count), s.first_layer.resize(count);
-  s.owner.resize(count), s.root.resize(count);
+  s.reliability.resize(count), s.owner.resize(count), s.root.resize(count);
 }
 
 }  // namespace

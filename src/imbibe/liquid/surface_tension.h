@@ -6,8 +6,8 @@
 //   gamma surface tension [N/m], beta wetness of wall k (contact_angle.h), n^ = n/|n|
 // The factor 2: only the liquid half of the colour's profile exists, integral of |n| across it is 1/2. The force equals the
 // pressure p_s = gamma kappa prescribed at the surface (Young-Laplace), so p inside is the true one.
-// kappa is measured only on the set S: |n|H > 0.3, C > 0.25, C + beta lambda < 0.92, at least 1.2 dx from walls; it acts on
-// all particles with |n| > 0 (extended from S by a kernel mean): else 17 % of the tension is lost.
+// kappa is measured only on the set S: |n|H > 0.3, C > 0.25, C + beta lambda < 0.92, at least 1.2 dx from walls (all as
+// gradual weights); it acts on all particles with |n| > 0 (extended from S by a kernel mean): else 17 % of the tension is lost.
 // offset: particles lie about dx/2 under the surface they stand for.
 // Sources: Brackbill, Kothe & Zemach, J. Comput. Phys. 100 (1992) 335; Morris, Int. J. Numer. Meth. Fluids 33 (2000) 333.
 // Net force of a drop that touches nothing is set to zero (a gather form does not conserve momentum by itself).
@@ -48,6 +48,7 @@ struct SurfaceScratch {
   std::vector<Float4> normal;         // unit n, w = kappa; on S
   std::vector<float> curvature;       // kappa, extended beyond S
   std::vector<float> wet_filling;     // C + beta lambda
+  std::vector<float> reliability;     // 0..1, of normal and curvature; > 0: in S
   std::vector<float> first_layer;     // 1 next to a wall, 0 from 1.6 dx on
   std::vector<Index> owner;           // the reliable particle whose drop i belongs to; no_index: none
   std::vector<Index> root;            // of the drops, by reliable particle
