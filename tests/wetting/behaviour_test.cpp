@@ -156,8 +156,10 @@ TEST(Monofilament, SorbsFromThePoresBesideItAndCarriesNothing) {
   Contents c = conditioned_contents(m, Air{});
   for (std::size_t i = m.segments; i < m.nodes(); ++i) c.liquid_kg[i] = 0.8 * m.liquid.density * m.volume[i];
   const Real before = total_kg(m, c), sorbed = total_sorbed_kg(m, c);
+  EXPECT_NEAR(saturation(m, c, 0), 0, 1e-12);  // conditioned is dry
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(step_wetting(m, c, {}, {}, Air{}, {}, 100).converged);
   EXPECT_GT(total_sorbed_kg(m, c), sorbed);
+  EXPECT_GT(saturation(m, c, 0), 0);
   EXPECT_EQ(total_yarn_kg(m, c), 0);
   EXPECT_NEAR(total_kg(m, c), before, 1e-12 * before);
 }

@@ -429,7 +429,9 @@ Real saturation(const WettingModel& m, const Contents& contents, std::size_t nod
   if (volume > 0) return contents.liquid_kg[node] / (m.liquid.density * volume);
   if (node >= m.segments) return 0;
   const YarnWetting& yarn = m.yarns[m.segment_type[node]];
-  return yarn.swelling_regain > 0 ? node_regain(m, contents, node) / yarn.swelling_regain : 0;
+  const Real room = yarn.swelling_regain - yarn.regain_65;
+  if (yarn.void_share > 0 || room <= 0) return 0;
+  return std::clamp<Real>((node_regain(m, contents, node) - yarn.regain_65) / room, 0, 1);
 }
 
 Real node_pressure(const WettingModel& m, const Contents& contents, std::size_t node) {

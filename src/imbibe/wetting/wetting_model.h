@@ -192,8 +192,8 @@ Contents conditioned_contents(const WettingModel& model, const Air& air);
 // Volume that saturation 1 means now, swelling counted (m3).
 Real current_volume(const WettingModel& model, const Contents& contents, std::size_t node);
 
-// Liquid per what the node holds when full: 0 .. 1 + overfill. A segment that holds no capillary water (monofilament,
-// fibres that do not wet): its sorbed water above zero per swelling regain.
+// Liquid per what the node holds when full: 0 .. 1 + overfill. A yarn whose fibres do not wet holds none: 0. A
+// monofilament: its sorbed water between the regain at 65 % relative humidity (0) and full swelling (1).
 Real saturation(const WettingModel& model, const Contents& contents, std::size_t node);
 
 // Liquid pressure of the node, Pa (negative: suction).
