@@ -23,10 +23,24 @@ SeriesRow row_at(Real time) {
 }
 
 TEST(Series, has_the_fixed_columns_first_and_in_order) {
-  const std::vector<std::string> fixed{
-      "time_s",    "free_kg",       "sorbed_kg", "yarn_kg",     "pore_kg",           "cell_kg",
-      "evaporated_kg", "left_kg",   "supplied_kg", "ledger_error", "particles",      "wet_area_m2",
-      "wet_extent_warp_m", "wet_extent_weft_m", "mean_saturation", "max_saturation", "step_s", "steps"};
+  const std::vector<std::string> fixed{"time_s",
+                                       "free_kg",
+                                       "sorbed_kg",
+                                       "yarn_kg",
+                                       "pore_kg",
+                                       "cell_kg",
+                                       "evaporated_kg",
+                                       "left_kg",
+                                       "supplied_kg",
+                                       "ledger_error",
+                                       "particles",
+                                       "wet_area_m2",
+                                       "wet_extent_warp_m",
+                                       "wet_extent_weft_m",
+                                       "mean_saturation",
+                                       "max_saturation",
+                                       "step_s",
+                                       "steps"};
   const std::vector<std::string>& columns = series_columns();
   ASSERT_GE(columns.size(), fixed.size());
   EXPECT_EQ(std::vector<std::string>(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(fixed.size())),
