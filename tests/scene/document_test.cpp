@@ -73,7 +73,7 @@ TEST(Document, AFileLargerThanTheLimitIsRefused) {
 TEST(Document, ABaseIsMergedKeyByKeyAndErrorsKeepTheirOwnFile) {
   TemporaryFolder folder;
   folder.write("base.yaml", "a: {x: 1, y: 2}\nlist: [1, 2]\n");
-  const auto file = folder.write("sub/own.yaml", "base: ../base.yaml\na:\n  y: 3\n");
+  const auto file = folder.write("sub/own.yaml", "extends: ../base.yaml\na:\n  y: 3\n");
   std::vector<Problem> problems;
   const DataNode root = read_document(file, problems);
   ASSERT_TRUE(problems.empty());
@@ -87,7 +87,7 @@ TEST(Document, ABaseIsMergedKeyByKeyAndErrorsKeepTheirOwnFile) {
 TEST(Document, AnInnerMapMayHaveABaseOfItsOwn) {
   TemporaryFolder folder;
   folder.write("cloth.yaml", "weave: plain\nwarp: {density: 10}\n");
-  const auto file = folder.write("own.yaml", "textiles:\n  - base: cloth.yaml\n    warp: {fibre: wool}\n");
+  const auto file = folder.write("own.yaml", "textiles:\n  - extends: cloth.yaml\n    warp: {fibre: wool}\n");
   std::vector<Problem> problems;
   const DataNode root = read_document(file, problems);
   ASSERT_TRUE(problems.empty());
@@ -95,13 +95,13 @@ TEST(Document, AnInnerMapMayHaveABaseOfItsOwn) {
   EXPECT_EQ(cloth.find("weave")->text, "plain");
   EXPECT_EQ(cloth.find("warp")->find("density")->text, "10");
   EXPECT_EQ(cloth.find("warp")->find("fibre")->text, "wool");
-  EXPECT_EQ(cloth.find("base"), nullptr);
+  EXPECT_EQ(cloth.find("extends"), nullptr);
 }
 
 TEST(Document, ChangeSetsKeysInsideListsOfTheBase) {
   TemporaryFolder folder;
   folder.write("base.yaml", "list:\n  - {a: 1}\n  - {a: 2, b: 3}\n");
-  const auto file = folder.write("own.yaml", "base: base.yaml\nchange:\n  list[1].a: 9\n");
+  const auto file = folder.write("own.yaml", "extends: base.yaml\nchange:\n  list[1].a: 9\n");
   std::vector<Problem> problems;
   const DataNode root = read_document(file, problems);
   ASSERT_TRUE(problems.empty());
@@ -113,8 +113,8 @@ TEST(Document, ChangeSetsKeysInsideListsOfTheBase) {
 
 TEST(Document, FilesThatBuildOnEachOtherInACircleAreRefused) {
   TemporaryFolder folder;
-  folder.write("a.yaml", "base: b.yaml\n");
-  folder.write("b.yaml", "base: a.yaml\n");
+  folder.write("a.yaml", "extends: b.yaml\n");
+  folder.write("b.yaml", "extends: a.yaml\n");
   std::vector<Problem> problems;
   read_document(folder.path() / "a.yaml", problems);
   ASSERT_EQ(problems.size(), 1u);
@@ -123,12 +123,12 @@ TEST(Document, FilesThatBuildOnEachOtherInACircleAreRefused) {
 
 TEST(Document, AMissingBaseIsReportedWhereItIsNamed) {
   TemporaryFolder folder;
-  const auto file = folder.write("own.yaml", "version: 1\nbase: nowhere.yaml\n");
+  const auto file = folder.write("own.yaml", "version: 1\nextends: nowhere.yaml\n");
   std::vector<Problem> problems;
   read_document(file, problems);
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].line, 2);
-  EXPECT_EQ(problems[0].column, 7);
+  EXPECT_EQ(problems[0].column, 10);
   EXPECT_NE(problems[0].message.find("there is no file"), std::string::npos);
 }
 

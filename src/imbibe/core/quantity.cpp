@@ -32,6 +32,9 @@ struct UnitSystem {
     add("gsm", "1e-3 kg/m2");
     add("ends", "1");
     add("picks", "1");
+    add("byte", "1");
+    add("MB", "1e6");
+    add("GB", "1e9");
   }
   void add(const char* name, const char* definition) {
     Unit unit(ut_parse(system, definition, UT_UTF8));

@@ -246,18 +246,18 @@ std::optional<std::string> file_text(const std::filesystem::path& file, const Pl
 DataNode read_chain(const std::filesystem::path& file, const Place& asked_from, int depth,
                     std::vector<Problem>& problems, const DocumentLimits& limits);
 
-// Replaces a map that says `base` or `change` by the base with this map's keys on top, inner maps first.
+// Replaces a map that says `extends` or `change` by the base with this map's keys on top, inner maps first.
 void resolve_bases(DataNode& node, const std::filesystem::path& file, int depth, std::vector<Problem>& problems,
                    const DocumentLimits& limits) {
-  const auto base = node.kind == Kind::map ? take(node, "base") : std::nullopt;
+  const auto base = node.kind == Kind::map ? take(node, "extends") : std::nullopt;
   const auto change = node.kind == Kind::map ? take(node, "change") : std::nullopt;
   for (DataNode& item : node.items) resolve_bases(item, file, depth, problems, limits);
   if (base) {
     if (base->kind != Kind::scalar || base->text.empty()) {
-      problems.push_back(problem_at(base->place, "base", "wants the name of another file"));
+      problems.push_back(problem_at(base->place, "extends", "wants the name of another file"));
     } else if (depth >= limits.bases) {
       problems.push_back(problem_at(
-          base->place, "base", fmt::format("more than {} files build on each other (or in a circle)", limits.bases)));
+          base->place, "extends", fmt::format("more than {} files build on each other (or in a circle)", limits.bases)));
     } else {
       const auto path = (file.parent_path() / base->text).lexically_normal();
       DataNode whole = read_chain(path, base->place, depth + 1, problems, limits);
@@ -278,7 +278,7 @@ void resolve_bases(DataNode& node, const std::filesystem::path& file, int depth,
 
 DataNode read_chain(const std::filesystem::path& file, const Place& asked_from, int depth,
                     std::vector<Problem>& problems, const DocumentLimits& limits) {
-  const auto text = file_text(file, asked_from, depth == 0 ? "" : "base", problems, limits);
+  const auto text = file_text(file, asked_from, depth == 0 ? "" : "extends", problems, limits);
   if (!text) return {};
   DataNode own = parse_document(*text, file.string(), problems, limits);
   resolve_bases(own, file, depth, problems, limits);

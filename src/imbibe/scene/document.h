@@ -2,7 +2,7 @@
 // yaml-cpp's event interface, because the tree that yaml-cpp builds hides duplicate keys and has no size limits.
 //
 // In any map:
-//   base: other.yaml          start from that file's map: maps merge key by key, lists and scalars replace
+//   extends: other.yaml       start from that file's map: maps merge key by key, lists and scalars replace
 //   change: {a.b[0].c: ...}   then set single keys by their path inside this map, as --set does
 //
 // Every node keeps the file, line and column it was written at, so an error points at the file that caused it.
@@ -51,7 +51,7 @@ struct DocumentLimits {
 DataNode parse_document(const std::string& text, const std::string& file, std::vector<Problem>& problems,
                         const DocumentLimits& limits = {});
 
-// Reads a file with every `base` and `change` resolved. Names of files are relative to the file that gives them.
+// Reads a file with every `extends` and `change` resolved. Names of files are relative to the file that gives them.
 DataNode read_document(const std::filesystem::path& file, std::vector<Problem>& problems,
                        const DocumentLimits& limits = {});
 

@@ -1,5 +1,5 @@
 // Fabrics by themselves: a fabric file (the keys of a scene's textile that describe the cloth), a WIF draft, or the
-// textiles of a scene. A scene uses a fabric file through `textiles: [{base: fabric.yaml, ...}]`.
+// textiles of a scene. A scene uses a fabric file through `textiles: [{extends: fabric.yaml, ...}]`.
 // Tested in tests/scene/fabric_file_test.cpp.
 #pragma once
 

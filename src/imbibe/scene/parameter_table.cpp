@@ -102,11 +102,11 @@ Json map_schema(const std::vector<ParameterRow>& rows, const std::string& path, 
     if (row.required) required.push_back(leaf_name(row.path));
     properties[leaf_name(row.path)] = std::move(schema);
   }
-  properties["base"] = {{"type", "string"}, {"description", "file whose keys this map starts from"}};
-  properties["change"] = {{"type", "object"}, {"description", "single keys of the base to change, by their path"}};
+  properties["extends"] = {{"type", "string"}, {"description", "file whose keys this map starts from"}};
+  properties["change"] = {{"type", "object"}, {"description", "single keys to change, by their path"}};
   map["properties"] = std::move(properties);
-  // A `base` may give what is required.
-  if (!required.empty()) map["anyOf"] = Json::array({{{"required", required}}, {{"required", Json::array({"base"})}}});
+  // A file that is extended may give what is required.
+  if (!required.empty()) map["anyOf"] = Json::array({{{"required", required}}, {{"required", Json::array({"extends"})}}});
   if (short_form.is_null()) return map;
   return {{"anyOf", Json::array({short_form, map})}};
 }
@@ -162,7 +162,7 @@ std::string table_markdown(const std::vector<ParameterRow>& rows) {
       "A value with a unit is a text (`20 tex`, `24 /cm`, `50 uL`, `60 deg`); a bare number is SI. Temperatures and "
       "angles always need a unit. `[]` stands for an item of a list; in `--set` and in messages it carries its index, "
       "as in `textiles[0].warp.density`.\n\n"
-      "Any map may start from another file: `base: other.yaml` reads that file's keys first (maps merge key by key, "
+      "Any map may start from another file: `extends: other.yaml` reads that file's keys first (maps merge key by key, "
       "lists and single values are replaced), and `change: {path: value}` then sets single keys inside lists, such as "
       "`textiles[0].warp.fibre`. Names of files are relative to the file that gives them.\n";
   text += markdown_section(rows, "");
