@@ -4,6 +4,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/wetting/fibre_exchange.h"
+#include "imbibe/wetting/swelling.h"
 #include "imbibe/wetting/transport.h"
 
 namespace imbibe {
@@ -16,7 +17,7 @@ constexpr Real growth = 1.3;
 constexpr Real alone_growth = 2;      // nothing supplies the cloth and hardly anything moves
 constexpr Real quiet_change = 0.05;   // of saturation
 constexpr Real shrink = 0.3;
-constexpr int most_rejections = 40;
+constexpr int most_rejections = 30;   // one after the other: 0.3^30 of the step
 
 struct Substep {
   TransportResult transport;
@@ -33,6 +34,19 @@ Substep attempt(const TransportInput& input, Contents& contents, const Air& air,
   result.transport = advance_transport(input, contents, work, released);
   if (result.transport.converged) sorb_liquid(m, contents, 0.5 * input.dt);
   return result;
+}
+
+// Fibres that swelled after the last transport may have left a full pore less room: the surplus comes out.
+void release_surplus(const WettingModel& m, Contents& contents, std::vector<ReleasedLiquid>& released) {
+  if (!m.params.swelling) return;
+  for (std::size_t node = m.segments; node < m.nodes(); ++node) {
+    Real& held = contents.liquid_kg[node];
+    if (held <= m.liquid.density * m.volume[node] * least_pore) continue;
+    const Real most = m.liquid.density * current_volume(m, contents, node) * (1 + m.overfill[node]);
+    if (held <= most) continue;
+    released.push_back({static_cast<Index>(node), held - most});
+    held = most;
+  }
 }
 
 Real next_step(Real dt, const Substep& substep, bool supplied) {
@@ -55,6 +69,7 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
   TransportWorkspace work;
   Contents saved;
   Real step = dt;
+  int rejected_in_a_row = 0;
   while (report.advanced_s < dt) {
     const Real left = dt - report.advanced_s;
     // The last piece takes all that is left, so the pieces add up to dt and no sliver remains.
@@ -74,11 +89,13 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
       report.released.resize(released_before);
       step = shrink * now;
       report.suggested_step = step;
-      if (++report.rejected <= most_rejections) continue;
+      ++report.rejected;
+      if (++rejected_in_a_row <= most_rejections) continue;
       report.converged = false;
       break;
     }
     ++report.substeps;
+    rejected_in_a_row = 0;
     report.evaporated_kg += substep.evaporated;
     report.largest_change = std::max(report.largest_change, substep.transport.largest_change);
     for (std::size_t i = 0; i < supplies.size(); ++i) {
@@ -90,6 +107,7 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
     if (!last || report.substeps == 1) report.suggested_step = step;
     report.advanced_s = last ? dt : report.advanced_s + now;
   }
+  release_surplus(model, contents, report.released);
   report.suggested_step = std::clamp(report.suggested_step, 1e-9, longest_step);
   return report;
 }
