@@ -143,11 +143,12 @@ TEST_F(BadInput, MoreParticlesThanTheMachineHoldsIsCodeTwoAtOnce) {
   EXPECT_NE(outcome.output.find("particles"), std::string::npos) << outcome.output;
 }
 
-TEST_F(BadInput, AnOutputFolderThatCannotBeWrittenIsCodeTwo) {
+TEST_F(BadInput, AnOutputFolderThatCannotBeWrittenIsARunTimeFailureAtOnce) {
   const std::string file = write("scene.yaml", scene_text);
   write("taken", "a file, not a folder");
   const Outcome outcome = run_command("run " + file + " -o " + (folder_ / "taken" / "out").string());
-  EXPECT_EQ(outcome.code, 2) << outcome.output;
+  EXPECT_EQ(outcome.code, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("cannot create the run folder"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("taken"), std::string::npos) << outcome.output;
 }
 
