@@ -29,28 +29,31 @@ std::vector<Wall> walls_of(const std::vector<Shape>& shapes) {
   return walls;
 }
 
-// A column between four side walls on a floor; viscous, so that it soon rests.
+// A square column of the given width, 10 mm high, between four side walls on a floor.
 struct Column {
-  std::vector<Shape> shapes{Plane{}, Plane{{-2.5e-3, 0, 0}, {1, 0, 0}}, Plane{{2.5e-3, 0, 0}, {-1, 0, 0}},
-                            Plane{{0, -2.5e-3, 0}, {0, 1, 0}}, Plane{{0, 2.5e-3, 0}, {0, -1, 0}}};
-  Liquid liquid = liquid_of({{.form = SourceForm::box, .centre = {0, 0, 5e-3}, .size = {5e-3, 5e-3, 10e-3}}}, 5e-4);
+  explicit Column(Real w)
+      : shapes{Plane{}, Plane{{-w / 2, 0, 0}, {1, 0, 0}}, Plane{{w / 2, 0, 0}, {-1, 0, 0}},
+               Plane{{0, -w / 2, 0}, {0, 1, 0}}, Plane{{0, w / 2, 0}, {0, -1, 0}}},
+        liquid(liquid_of({{.form = SourceForm::box, .centre = {0, 0, 5e-3}, .size = {w, w, 10e-3}}}, 5e-4)) {}
+  std::vector<Shape> shapes;
+  Liquid liquid;
   LiquidParams params;
 };
 
 TEST(LiquidStep, a_resting_column_has_the_hydrostatic_pressure_and_the_floor_carries_its_weight) {
-  Column c;
+  Column c(10e-3);
   c.params.surface_tension = false;
-  c.liquid.kind.viscosity = 0.05;
+  c.liquid.kind.viscosity = 0.05;  // so that it soon rests
   const std::vector<Wall> walls = walls_of(c.shapes);
   LiquidScratch scratch;
   Real time = 0, averaged = 0;
   Vec3 impulse{};
   Real slope_sum = 0;
   int samples = 0;
-  while (time < 0.25) {
+  while (time < 0.18) {
     const LiquidStepReport report = step_liquid(c.liquid, c.params, walls, earth, 1, scratch);
     time += report.step_s;
-    if (time < 0.15) continue;
+    if (time < 0.12) continue;
     averaged += report.step_s;
     for (const Vec3& i : report.wall_impulse) impulse += i;
     // Least-squares slope of pressure over height.
@@ -65,10 +68,10 @@ TEST(LiquidStep, a_resting_column_has_the_hydrostatic_pressure_and_the_floor_car
     EXPECT_LT(report.density_error, 1e-3);  // the stated default
   }
   const Real weight = c.liquid.mass() * 9.81;
-  // In a column only 10 spacings wide the pressure rises 7-9 % too fast with depth: along a wall the gradient is taken
-  // over the liquid's half of the kernel alone, so a layer of about 0.2 dx at each side wall carries nothing. The error
-  // falls with the width. The weight itself is right.
-  EXPECT_NEAR(slope_sum / samples, -998.2 * 9.81, 0.10 * 998.2 * 9.81);
+  // The goal is 2 %. Measured: 9 % in a tube 10 spacings wide, 4.3 % at 20 (1.3 % between the floor's and the surface's
+  // layers): the gradient along a wall is taken over the liquid's part of the kernel alone, so a layer of about 0.2
+  // spacings at each side wall carries nothing. Half as much at twice the width.
+  EXPECT_NEAR(slope_sum / samples, -998.2 * 9.81, 0.05 * 998.2 * 9.81);
   EXPECT_NEAR(-impulse.z / averaged, weight, 0.02 * weight);
   EXPECT_NEAR(impulse.x / averaged, 0, 0.02 * weight);
 }
@@ -128,7 +131,7 @@ TEST(LiquidStep, has_the_same_bits_for_any_number_of_threads_and_a_fresh_scratch
   std::vector<Liquid> results;
   for (const int threads : {1, 2, 3}) {
     const ThreadLimit limit(threads);
-    Column c;
+    Column c(5e-3);
     const std::vector<Wall> walls = walls_of(c.shapes);
     LiquidScratch scratch;
     for (int k = 0; k < 15; ++k) {
