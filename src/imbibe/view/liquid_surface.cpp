@@ -172,7 +172,7 @@ DrawnMesh liquid_surface(std::span<const Vec3f> particles, Real spacing, const L
   const Bins bins = sorted_bins(centres, origin, support);
   // A lone particle's ball has the particle's volume: radius (3 / 4 pi)^(1/3) spacings at the iso value, times what
   // meshing so small a ball with cells of half a spacing, and relaxing it, takes away (measured).
-  const Real lone_radius = 1.5 * std::cbrt(3 / (4 * pi)) / params.support;
+  const Real lone_radius = 1.3 * std::cbrt(3 / (4 * pi)) / params.support;
   const float highest = static_cast<float>(params.iso) / kernel_shape(static_cast<float>(lone_radius * lone_radius));
   const std::vector<float> heights = kernel_heights(bins, support, highest);
 

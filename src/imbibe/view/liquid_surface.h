@@ -22,7 +22,7 @@ struct LiquidSurfaceParams {
   Real cell = 0.5;              // grid cell / spacing
   Real iso = 0.5;
   int relaxations = 20;         // pairs of Taubin steps
-  int normal_rounds = 6;        // averagings of the normals
+  int normal_rounds = 16;       // averagings of the normals
 };
 
 DrawnMesh liquid_surface(std::span<const Vec3f> particles, Real spacing, const LiquidSurfaceParams& params = {});

@@ -47,7 +47,11 @@ LookInput look_input(const Frame& frame, const Stage& stage, const PictureOption
   in.content_size = static_cast<float>(stage.content_size);
   in.centre = Vec3f(stage.centre);
   in.liquid_depth = static_cast<float>(liquid_depth(frame));
-  in.contact_gap = static_cast<float>(2 * frame.particle_spacing);
+  // Particles end a spacing or so above what they wet, and cloth is two yarns thick: water fills its pores to the
+  // bottom, whatever the resolution.
+  float thickest = 0;
+  for (const float r : frame.yarns.radius) thickest = std::max(thickest, r);
+  in.contact_gap = static_cast<float>(2 * frame.particle_spacing) + 5 * thickest;
   in.pixel_angle = static_cast<float>(2 * camera.tan_half_height / options.height);
   return in;
 }

@@ -88,7 +88,8 @@ struct RayScene::Parts {
   std::vector<Piece> pieces;                   // of all yarns
   std::vector<Vec3f> tangent;                  // per yarn point
   std::vector<float> along;                    // per yarn point, m
-  unsigned yarn_geometry = RTC_INVALID_GEOMETRY_ID;
+  unsigned yarn_geometry = RTC_INVALID_GEOMETRY_ID, end_geometry = RTC_INVALID_GEOMETRY_ID;
+  std::vector<Index> end_yarn, end_point;      // of every cut end
   float skin = 1e-7f;
 
   Parts();
@@ -97,7 +98,9 @@ struct RayScene::Parts {
   void build_liquid(const Frame& frame);
   void prepare_yarns();
   void attach_yarns(unsigned id);
+  void attach_ends(unsigned id);
   void yarn_hit(const RTCRayHit& found, SolidHit& hit) const;
+  void end_hit(const RTCRayHit& found, SolidHit& hit) const;
 };
 
 RayScene::Parts::Parts() : device(rtcNewDevice(nullptr)) {
@@ -128,8 +131,11 @@ void RayScene::Parts::build_solids() {
   }
   for (unsigned i = 0; i < parts.size(); ++i) attach_mesh(device.get(), solids.get(), parts[i].mesh, i);
   if (yarns.yarns() > 0) prepare_yarns();
-  yarn_geometry = RTC_INVALID_GEOMETRY_ID;
-  if (!pieces.empty()) attach_yarns(static_cast<unsigned>(parts.size()));
+  yarn_geometry = end_geometry = RTC_INVALID_GEOMETRY_ID;
+  if (!pieces.empty()) {
+    attach_yarns(static_cast<unsigned>(parts.size()));
+    attach_ends(static_cast<unsigned>(parts.size()) + 1);
+  }
   // Trees are built by one thread: then they, and with them the last bit of every hit, are always the same.
   const ThreadLimit one(1);
   rtcCommitScene(solids.get());
@@ -192,6 +198,44 @@ void RayScene::Parts::attach_yarns(unsigned id) {
   yarn_geometry = id;
 }
 
+// Curves are open tubes: a disc closes each cut end.
+void RayScene::Parts::attach_ends(unsigned id) {
+  const DrawnYarns& y = yarns;
+  end_yarn.clear(), end_point.clear();
+  for (std::size_t yarn = 0; yarn < y.yarns(); ++yarn) {
+    const Index first = y.first_point[yarn], end = y.first_point[yarn + 1];
+    if (end - first < 2) continue;
+    for (const Index p : {first, end - 1}) end_yarn.push_back(static_cast<Index>(yarn)), end_point.push_back(p);
+  }
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+  auto* middle = static_cast<Float4*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                                             sizeof(Float4), end_point.size()));
+  auto* normal = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3,
+                                                            sizeof(Vec3f), end_point.size()));
+  for (std::size_t i = 0; i < end_point.size(); ++i) {
+    const Vec3f& p = y.points[end_point[i]];
+    middle[i] = {p.x, p.y, p.z, y.radius[end_yarn[i]]};
+    normal[i] = end_point[i] == y.first_point[end_yarn[i]] ? -tangent[end_point[i]] : tangent[end_point[i]];
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(solids.get(), geometry, id);
+  rtcReleaseGeometry(geometry);
+  end_geometry = id;
+}
+
+void RayScene::Parts::end_hit(const RTCRayHit& found, SolidHit& hit) const {
+  const Index yarn = end_yarn[found.hit.primID], p = end_point[found.hit.primID];
+  hit.yarn = hit.cut_end = true;
+  hit.normal = hit.flat_normal;
+  hit.axis = tangent[p];
+  hit.radius = yarns.radius[yarn];
+  hit.colour = yarns.colour[yarn];
+  hit.point = p > yarns.first_point[yarn] ? p - 1 : p;
+  hit.nearest = p;
+  hit.saturation = hit.nearest_saturation = yarns.saturation[p];
+  hit.along = along[p];
+}
+
 void RayScene::Parts::yarn_hit(const RTCRayHit& found, SolidHit& hit) const {
   const DrawnYarns& y = yarns;
   const Piece& piece = pieces[found.hit.primID];
@@ -249,6 +293,8 @@ bool RayScene::meets_solid(const Ray& ray, float limit, SolidHit& hit) const {
   hit.flat_normal = facing(normalized(Vec3f{found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}), ray.direction);
   if (found.hit.geomID == parts_->yarn_geometry) {
     parts_->yarn_hit(found, hit);
+  } else if (found.hit.geomID == parts_->end_geometry) {
+    parts_->end_hit(found, hit);
   } else {
     const SolidPart& part = parts_->parts[found.hit.geomID];
     hit.normal = facing(mesh_normal(part.mesh, found.hit), ray.direction);

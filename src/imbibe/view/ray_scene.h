@@ -18,6 +18,7 @@ struct SolidHit {
   Vec3f normal;       // unit, smooth, towards the side the ray comes from
   Vec3f flat_normal;  // of the geometry itself, same side
   bool yarn = false;
+  bool cut_end = false;  // of a yarn
   Vec3f colour;       // linear RGB, dry
   float saturation = 0;   // interpolated
   Index point = no_index; // of the yarns, the nearest before the hit; point + 1 is the nearest after it

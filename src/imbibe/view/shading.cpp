@@ -49,10 +49,10 @@ Vec3f sky(const Look& look, const Vec3f& direction) {
   return mix(look.sky_horizon, look.sky_up, std::pow(std::max(0.0f, direction.z), 0.6f));
 }
 
-// What a mirror sees of the studio: the sky and a square soft box about the light.
+// What a mirror sees of the studio: the sky and a square window where water shows it best.
 Vec3f studio(const Look& look, const Vec3f& direction) {
-  const Basis basis = basis_about(look.to_light);
-  const float ahead = dot(direction, look.to_light);
+  const Basis basis = basis_about(look.to_window);
+  const float ahead = dot(direction, look.to_window);
   Vec3f seen = sky(look, direction);
   if (ahead > 0) {
     const float x = dot(direction, basis.a) / ahead, y = dot(direction, basis.b) / ahead, half = 0.30f;
@@ -173,7 +173,11 @@ Surface surface_of(const Trace& trace, const Ray& ray, const SolidHit& hit) {
   touch(trace.touched, hit.point + 1);
   s.colour = wet_colour(hit.colour, hit.saturation);
   s.gloss = smoothstep(0.15f, 1.0f, hit.saturation);
-  lay_fibres(hit, hit.distance * look.pixel_angle, s);
+  if (hit.cut_end) {
+    s.colour *= 0.8f;  // light sinks in between the fibres' ends
+  } else {
+    lay_fibres(hit, hit.distance * look.pixel_angle, s);
+  }
   return s;
 }
 
@@ -259,6 +263,7 @@ Look look_for(const LookInput& in) {
   if (in.style == PictureStyle::diagram) {
     // A light table: white, lit from above the left shoulder, shadows light.
     look.to_light = normalized(in.right * -0.55f + ahead * -0.25f + Vec3f{0, 0, 1});
+    look.to_window = look.to_light;
     look.light_size = 0.30f;
     look.light = Vec3f{1, 1, 1} * 0.50f;
     look.sky_up = Vec3f{1, 1, 1} * 0.62f;
@@ -270,6 +275,7 @@ Look look_for(const LookInput& in) {
   } else {
     // A studio: a large soft light behind the left of the subject, a cool sky, a warm table.
     look.to_light = normalized(in.right * -0.62f + ahead * 0.55f + Vec3f{0, 0, 1.0f});
+    look.to_window = normalized(in.right * -0.75f + ahead * -0.35f + Vec3f{0, 0, 1.0f});
     look.light_size = 0.22f;
     look.light = Vec3f{1.0f, 0.91f, 0.78f} * 0.98f;
     look.sky_up = Vec3f{0.80f, 0.90f, 1.0f} * 0.36f;

@@ -15,6 +15,7 @@ namespace imbibe {
 struct Look {
   PictureStyle style = PictureStyle::diagram;
   Vec3f to_light;                 // unit, towards the middle of the light
+  Vec3f to_window;                // unit, the bright window that water mirrors
   float light_size = 0.1f;        // tangent of its angular radius
   Vec3f light{1, 1, 1};           // irradiance on a surface that faces it, over pi
   Vec3f sky_up, sky_horizon;      // radiance
