@@ -198,7 +198,9 @@ void RunFolder::write_output(const World& world, const StepReport& last_step) {
   }
   series_.write(series_row(world, last_step, setup_.measures));
   ++outputs_;
-  write_run_json(world, RunStatus::running, "");
+  // Replacing a file waits for the disk on common file systems (15 ms per output were measured with all of them), and
+  // nobody reads this one more than once a second.
+  if (wall_s() - run_json_wall_s_ > 1) write_run_json(world, RunStatus::running, "");
 }
 
 void RunFolder::write_checkpoint(const World& world) {
@@ -258,6 +260,7 @@ void RunFolder::write_run_json(const World& world, RunStatus status, const std::
   out["notes"] = notes_;
   // Texts come from the user's files: what is not UTF-8 is replaced rather than refused.
   write_whole_file(folder_ / "run.json", out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  run_json_wall_s_ = wall_s();
 }
 
 }  // namespace imbibe

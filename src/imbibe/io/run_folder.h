@@ -89,6 +89,7 @@ class RunFolder {
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   std::string started_at_;
   Real earlier_wall_s_ = 0;  // of the runs before a resume
+  Real run_json_wall_s_ = 0;  // when run.json was last written
   int outputs_ = 0;
   std::optional<Real> skip_until_;  // s, outputs up to this time are there already
 };
