@@ -14,17 +14,22 @@ constexpr float carries_force = 0.02f;
 
 Vec3f xyz(const Float4& v) { return {v.x, v.y, v.z}; }
 
-// Calls body(j, x_i - x_j) for every neighbour j of i.
-template <class Body>
-void each_neighbour(const LiquidFields& f, std::size_t i, Body&& body) {
+// Calls body(j, x_i - x_j) for every neighbour j of i that passes the test; the others cost next to nothing.
+template <class Test, class Body>
+void each_neighbour(const LiquidFields& f, std::size_t i, Test&& test, Body&& body) {
   const std::size_t lane = i % simd::lanes;
   const Slice s = f.neighbours.slice(i - lane);
   const Vec3f here = xyz(f.position[i]);
-  for (std::size_t k = 0; k < s.slots; ++k) {
-    const Index j = s.index[k * simd::lanes + lane];
-    if (j >= f.count) break;  // padding ends every list
-    body(j, here - xyz(f.position[j]));
+  const Index* id = s.index + lane;
+  for (std::size_t k = 0; k < s.slots; ++k, id += simd::lanes) {
+    if (*id >= f.count) break;  // padding ends every list
+    if (test(*id)) body(*id, here - xyz(f.position[*id]));
   }
+}
+
+template <class Body>
+void each_surface_neighbour(const LiquidFields& f, std::size_t i, Body&& body) {
+  each_neighbour(f, i, [&](Index j) { return f.surface[j] != 0; }, body);
 }
 
 struct Stage {
@@ -45,7 +50,8 @@ float ramp(float value, float from, float to) { return std::clamp((value - from)
 float wetness_of(const Stage& t, std::size_t i, const WallSample& wall) {
   const Vec3f foot = wall.normal * wall.distance;  // x_i - x_F
   float sum = t.weight(norm(foot));
-  each_neighbour(t.f, i, [&](Index, const Vec3f& x) { sum += t.weight(norm(x - foot)); });
+  each_neighbour(t.f, i, [](Index) { return true; },
+                 [&](Index, const Vec3f& x) { sum += t.weight(norm(x - foot)); });
   return wall_wetness(2 * sum, static_cast<float>(t.params.contact.wet_from),
                       static_cast<float>(t.params.contact.wet_to));
 }
@@ -87,8 +93,7 @@ float fitted_curvature(const Stage& t, std::size_t i) {
   const Vec3f first = normalized(across - normal * dot(across, normal));
   const Vec3f second = cross(normal, first);
   float xx = 0, xy = 0, yy = 0, nxx = 0, nxy = 0, nyx = 0, nyy = 0;
-  each_neighbour(f, i, [&](Index j, const Vec3f& to_here) {
-    if (!f.surface[j]) return;
+  each_surface_neighbour(f, i, [&](Index j, const Vec3f& to_here) {
     const Vec3f other = xyz(t.s.normal[j]);
     if (dot(other, normal) <= 0) return;
     const float near = std::max(0.0f, 1 - norm(to_here) * f.neighbours.kernel.inverse), w = near * near * near * t.s.reliability[j];
@@ -117,8 +122,7 @@ void extend(const Stage& t, std::size_t i) {
     return;
   }
   float sum = 0, weights = 0, heaviest = 0;
-  each_neighbour(t.f, i, [&](Index j, const Vec3f& x) {
-    if (!t.f.surface[j]) return;
+  each_surface_neighbour(t.f, i, [&](Index j, const Vec3f& x) {
     const float w = t.weight(norm(x)) * t.s.reliability[j];
     sum += w * t.s.normal[j].w, weights += w;
     if (own == 0 && w > heaviest) heaviest = w, t.s.owner[i] = j;
@@ -138,15 +142,14 @@ NearInterface near_interface(const Stage& t, std::size_t i, const WallSample& wa
   NearInterface seen;
   float weights = 0;
   const auto add = [&](std::size_t j, const Vec3f& to_here) {
-    if (!t.f.surface[j]) return;
     const float w = t.weight(norm(to_here)) * t.s.reliability[j];
     seen.normal += xyz(t.s.normal[j]) * w;
     seen.curvature += w * t.s.normal[j].w;
     seen.height += w * (wall.distance - dot(to_here, wall.normal));
     weights += w;
   };
-  add(i, {});
-  each_neighbour(t.f, i, [&](Index j, const Vec3f& x) { add(j, x); });
+  if (t.f.surface[i]) add(i, {});
+  each_surface_neighbour(t.f, i, [&](Index j, const Vec3f& x) { add(j, x); });
   if (weights <= 1e-6f) return seen;
   seen.normal = normalized(seen.normal);
   seen.curvature /= weights, seen.height /= weights;
@@ -237,8 +240,7 @@ void find_drops(const Stage& t) {
   for (std::size_t i = 0; i < t.f.count; ++i) root[i] = static_cast<Index>(i);
   for (std::size_t i = 0; i < t.f.count; ++i) {
     if (!t.f.surface[i]) continue;
-    each_neighbour(t.f, i, [&](Index j, const Vec3f&) {
-      if (j >= i || !t.f.surface[j]) return;
+    each_neighbour(t.f, i, [&](Index j) { return j < i && t.f.surface[j] != 0; }, [&](Index j, const Vec3f&) {
       const Index a = root_of(root, static_cast<Index>(i)), b = root_of(root, j);
       root[std::max(a, b)] = std::min(a, b);
     });

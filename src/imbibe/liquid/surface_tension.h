@@ -26,7 +26,7 @@
 namespace imbibe {
 
 struct SurfaceParams {
-  Real offset = 0.25;             // dx
+  Real offset = 0;                // dx
   Real numerical_viscosity = 0.1;  // of sqrt(gamma dx/rho), added to the liquid's: see numerical_viscosity()
   Real damping = 1;               // strength of the grid-scale filter per shortest capillary time (damping.h)
   ContactAngleParams contact;

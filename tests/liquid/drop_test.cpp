@@ -1,0 +1,270 @@
+// Surface tension [N/m] and contact angle [deg] go in; do they come out? Drops of water, 50 uL, without gravity unless
+// said, on the real step. Every figure of docs/decisions/0002 that a test can hold is held here, in short form.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "imbibe/core/random.h"
+#include "imbibe/liquid/liquid_step.h"
+
+namespace imbibe {
+namespace {
+
+constexpr Real drop_volume = 50e-9;  // m3
+const Real drop_radius = std::cbrt(3 * drop_volume / (4 * pi));
+
+// A spherical cap of unit volume sphere: lengths in R0, the radius of the sphere of its volume.
+struct Cap {
+  Real angle = 0, radius = 0, height = 0, base = 0, centre_height = 0, mean_square = 0;  // <x2 + y2>
+  explicit Cap(Real theta) : angle(theta) {
+    const Real c = std::cos(theta);
+    radius = std::cbrt(4 / ((2 + c) * (1 - c) * (1 - c)));
+    height = radius * (1 - c);
+    base = radius * std::sin(theta);
+    constexpr int slices = 400;
+    for (int k = 0; k < slices; ++k) {
+      const Real z = (k + 0.5) * height / slices;
+      const Real square = radius * radius - (radius - height + z) * (radius - height + z);
+      const Real share = pi * square * height / slices / (4 * pi / 3);
+      centre_height += share * z;
+      mean_square += share * square / 2;
+    }
+  }
+};
+
+// The cap angle at which `rising` (a function that rises with the angle) has the wanted value.
+template <class Rising>
+Real angle_where(Rising rising, Real wanted) {
+  Real low = radians(2), high = radians(178);
+  for (int i = 0; i < 50; ++i) {
+    const Real middle = 0.5 * (low + high);
+    (rising(Cap(middle)) < wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+struct Scene {
+  Liquid liquid;
+  LiquidParams params;
+  LiquidScratch scratch;
+  Shape plane = Plane{};
+  std::vector<Wall> walls;
+  Vec3 gravity{};
+  Real time = 0;
+  Real unit = 0;  // s, capillary time sqrt(rho R0^3/gamma)
+  Real error_sum = 0, vertical_force = 0;
+  int steps = 0;
+
+  LiquidStepReport step() {
+    LiquidStepReport r = step_liquid(liquid, params, walls, gravity, 1, scratch);
+    time += r.step_s;
+    error_sum += r.density_error;
+    vertical_force += r.surface_force.z;
+    ++steps;
+    return r;
+  }
+  void until(Real capillary_times) {
+    error_sum = vertical_force = 0, steps = 0;
+    while (time < capillary_times * unit) step();
+  }
+};
+
+// Points of a body-centred lattice of `resolution` spacings per R0 for which inside(x / R0) holds.
+template <class Inside>
+std::vector<Vec3> lattice_points(int resolution, Inside inside) {
+  std::vector<Vec3> points;
+  const Real edge = std::cbrt(2.0) / resolution;
+  const int reach = 3 * resolution;
+  for (int i = -reach; i < reach; ++i)
+    for (int j = -reach; j < reach; ++j)
+      for (int k = -reach; k < reach; ++k)
+        for (Real half : {0.25, 0.75}) {
+          const Vec3 x{(i + half) * edge, (j + half) * edge, (k + half) * edge};
+          if (inside(x)) points.push_back(x);
+        }
+  return points;
+}
+
+Scene scene_of(const std::vector<Vec3>& points, int resolution) {
+  Scene s;
+  const auto count = static_cast<Real>(points.size());
+  s.liquid.particle_mass = s.liquid.kind.density * drop_volume / count;
+  const Real spacing = s.liquid.spacing(), scale = spacing * resolution;
+  std::uint64_t id = 0;
+  for (const Vec3& x : points) {
+    const auto jitter = [&](std::uint64_t stream) { return 0.02 * spacing * (2 * uniform({1, id, 0}, stream) - 1); };
+    const Vec3 at = x * scale + Vec3{jitter(0), jitter(1), jitter(2)};
+    ++id;
+    Particles& p = s.liquid.particles;
+    p.position.push_back({static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z), 0});
+  }
+  Particles& p = s.liquid.particles;
+  const std::size_t n = p.position.size();
+  p.velocity.resize(n), p.id.resize(n), p.kind.resize(n), p.density.resize(n), p.pressure.resize(n);
+  p.warm_pressure.resize(n), p.warm_divergence.resize(n);
+  for (std::size_t i = 0; i < n; ++i) p.id[i] = static_cast<Index>(i);
+  s.liquid.next_id = static_cast<Index>(n);
+  s.unit = std::sqrt(s.liquid.kind.density * std::pow(drop_radius, 3) / s.liquid.kind.surface_tension);
+  return s;
+}
+
+Scene free_drop(int resolution) {
+  return scene_of(lattice_points(resolution, [](const Vec3& x) { return squared_norm(x) < 1; }), resolution);
+}
+
+// A sphere of the drop's size cut by the plane: centre_height < radius. Stands on a plane with the given angle.
+Scene standing_drop(int resolution, Real radius, Real centre_height, Real angle_deg) {
+  Scene s = scene_of(lattice_points(resolution,
+                                    [&](const Vec3& x) {
+                                      return x.z > 0 && squared_norm(x - Vec3{0, 0, centre_height}) < radius * radius;
+                                    }),
+                     resolution);
+  WallMaterial material;
+  material.contact_angle = radians(angle_deg);
+  s.walls.push_back({&s.plane, material, {}, false});
+  return s;
+}
+
+struct Moments {
+  Vec3 centre{};                    // R0
+  Real along = 0, across = 0;       // <(z - z_c)^2>, <x2 + y2>, in R0^2
+};
+
+Moments moments(const Scene& s) {
+  Moments m;
+  const auto& x = s.liquid.particles.position;
+  const auto n = static_cast<Real>(x.size());
+  for (const Float4& p : x) m.centre += Vec3{p.x, p.y, p.z} * (1 / n / drop_radius);
+  for (const Float4& p : x) {
+    const Vec3 d = Vec3{p.x, p.y, p.z} / drop_radius - m.centre;
+    m.along += d.z * d.z / n, m.across += (d.x * d.x + d.y * d.y) / n;
+  }
+  return m;
+}
+
+// Mean pressure of particles well inside.
+Real inner_pressure(const Scene& s) {
+  Real sum = 0, count = 0;
+  for (std::size_t i = 0; i < s.liquid.particles.size(); ++i) {
+    if (s.scratch.fields.colour_gradient[i].w > 0.15f) continue;
+    sum += s.liquid.particles.pressure[i], count += 1;
+  }
+  return sum / count;
+}
+
+// The contact angle from the height of the centre of mass (all particles, least noise), for the drop's own volume. The
+// volume is what the shape's second moment says beside it: an angle with a wrong volume is no angle.
+struct Measured {
+  Real angle_deg = 0, volume = 0, base = 0;
+};
+
+Measured measure(const Scene& s, const char* name) {
+  const Moments m = moments(s);
+  Measured r;
+  r.angle_deg = degrees(angle_where([](const Cap& c) { return c.centre_height; }, m.centre.z));
+  const Cap alike(angle_where([](const Cap& c) { return c.centre_height / std::sqrt(c.mean_square); },
+                              m.centre.z / std::sqrt(m.across)));
+  r.volume = std::pow(m.centre.z / alike.centre_height, 3);
+  r.base = alike.base * std::cbrt(r.volume);
+  std::printf("  %s: angle %.1f deg, volume %.3f, base %.3f R0, density error %.4f %%, force %.3f of theory\n", name,
+              r.angle_deg, r.volume, r.base, 100 * s.error_sum / s.steps,
+              s.vertical_force / s.steps /
+                  (-2 * pi * r.base * drop_radius * s.liquid.kind.surface_tension * std::sin(alike.angle)));
+  return r;
+}
+
+TEST(Drop, at_rest_has_the_laplace_pressure_its_volume_and_stays_where_it_is) {
+  Scene s = free_drop(8);
+  const Vec3 start = moments(s).centre;
+  s.until(1.5);
+  const Moments m = moments(s);
+  const Real laplace = 2 * s.liquid.kind.surface_tension / drop_radius;
+  std::printf("  pressure %.3f of 2 gamma/R, density error %.4f %%\n", inner_pressure(s) / laplace,
+              100 * s.error_sum / s.steps);
+  EXPECT_NEAR(inner_pressure(s) / laplace, 1, 0.05);  // the stated goal
+  EXPECT_NEAR(std::pow(5.0 / 3 * (m.along + m.across), 1.5), 1, 0.01);  // radius of gyration of a sphere
+  // 1 um in 19 ms; a gather form without the balance of free drops drifts by 40 um.
+  EXPECT_LT(norm(m.centre - start), 5e-4);
+  EXPECT_LT(s.error_sum / s.steps, 2e-3);  // from a jittered lattice; below 1e-3 at rest, see below
+  s.until(2.5);
+  EXPECT_LT(s.error_sum / s.steps, 1e-3);
+}
+
+TEST(Drop, oscillates_with_rayleighs_period) {
+  Scene s = free_drop(8);
+  for (Float4& p : s.liquid.particles.position) {
+    const Real r = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z), c = p.z / r;
+    const auto stretch = static_cast<float>(1 + 0.08 * (3 * c * c - 1) / 2);
+    p.x *= stretch, p.y *= stretch, p.z *= stretch;
+  }
+  // Zero crossings of the elongation, from the second half period on (the lattice relaxes in the first).
+  std::vector<Real> crossings;
+  Real before = 0, before_time = 0;
+  while (s.time < 4.2 * s.unit) {
+    const Moments m = moments(s);
+    const Real now = std::sqrt(2 * m.along / m.across) - 1;
+    if (before * now < 0) crossings.push_back(before_time + (s.time - before_time) * before / (before - now));
+    before = now, before_time = s.time;
+    s.step();
+  }
+  ASSERT_GE(crossings.size(), 3u);
+  const Real period = 2 * (crossings.back() - crossings.front()) / static_cast<Real>(crossings.size() - 1);
+  const Real theory = 2 * pi / std::sqrt(8.0) * s.unit;
+  std::printf("  period %.4f of Rayleigh's, %zu crossings\n", period / theory, crossings.size());
+  EXPECT_NEAR(period / theory, 1, 0.06);  // the stated goal
+}
+
+TEST(Drop, spreads_to_45_degrees) {
+  Scene s = standing_drop(8, std::cbrt(2.0), 0, 45);
+  s.until(5);
+  const Measured m = measure(s, "45 from 90");
+  EXPECT_NEAR(m.angle_deg, 45, 8);  // the stated goal
+}
+
+TEST(Drop, stands_at_90_degrees) {
+  Scene s = standing_drop(8, std::cbrt(2.0), 0, 90);
+  s.until(3.5);
+  const Measured m = measure(s, "90 from 90");
+  EXPECT_NEAR(m.angle_deg, 90, 8);
+  EXPECT_LT(s.error_sum / s.steps, 1e-3);
+}
+
+TEST(Drop, stands_at_120_degrees_from_a_tall_start) {
+  const Cap tall(radians(130));
+  Scene s = standing_drop(8, tall.radius, tall.height - tall.radius, 120);
+  s.until(5);
+  const Measured m = measure(s, "120 from 130");
+  EXPECT_NEAR(m.angle_deg, 120, 8);
+}
+
+TEST(Drop, is_held_down_by_the_tension_of_its_contact_line) {
+  // The sum of the curvature forces acts where the particles are, half a spacing inside the surface, so it falls short by
+  // about 0.6 dx/a: 7 % at 8 spacings per radius, 5 % at 16.
+  Scene s = standing_drop(16, std::cbrt(2.0), 0, 90);
+  s.until(0.3);  // the lattice relaxes
+  s.until(0.7);
+  const Measured m = measure(s, "90, fine");
+  EXPECT_NEAR(m.volume, 1, 0.01);
+  const Real theory = -2 * pi * m.base * drop_radius * s.liquid.kind.surface_tension * std::sin(radians(m.angle_deg));
+  EXPECT_NEAR(s.vertical_force / s.steps / theory, 1, 0.05);  // the stated goal
+}
+
+TEST(Drop, that_falls_at_30_cm_per_second_comes_to_rest_near_its_contact_angle) {
+  // 50 uL of real water with gravity. The centre of a drop of 110 degrees integrated after Bashforth and Adams lies at
+  // 0.493 R0, at 102 deg 0.460, at 118 deg 0.526.
+  Scene s = standing_drop(8, 1, 1.2, 110);
+  s.gravity = {0, 0, -9.81};
+  for (Float4& u : s.liquid.particles.velocity) u.z = -0.3f;
+  Real peak = 0;
+  while (s.time < 6 * s.unit) peak = std::max(peak, s.step().peak_density_error);
+  Real mean = 0, samples = 0;  // over one oscillation
+  while (s.time < 8 * s.unit) s.step(), mean += moments(s).centre.z, samples += 1;
+  std::printf("  centre at %.3f R0, peak density error %.3f\n", mean / samples, peak);
+  EXPECT_GT(mean / samples, 0.460);
+  EXPECT_LT(mean / samples, 0.526);
+}
+
+}  // namespace
+}  // namespace imbibe
