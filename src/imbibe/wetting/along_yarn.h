@@ -19,7 +19,7 @@
 // was calibrated on one class (plain polyester).
 // Assumes fibres parallel, laminar, isothermal, air free to leave. The Kirchhoff difference lets a wet node wet a dry one
 // with finite flow although k_r(0) = 0; upwinded differences of p would blow up there, harmonic means freeze.
-// Tested in tests/wetting/along_yarn_test.cpp and strip_test.cpp (sorptivity, Kuenzel absorption).
+// Tested in tests/wetting/models_test.cpp, network_test.cpp (sorptivity, Kuenzel absorption), spreading_test.cpp.
 #pragma once
 
 #include "imbibe/core/types.h"

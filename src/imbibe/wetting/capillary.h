@@ -15,7 +15,7 @@
 // f: corner menisci wet the walls of a pore as the root of its content. A floor of 0.01 would let liquid cross a dry pore
 // from one hydrophilic yarn to the next beside hydrophobic ones.
 // Source: Washburn 1921; Fries & Dreyer, J. Colloid Interface Sci. 320 (2008) 259, eq. 16; the links are derived.
-// Tested in tests/wetting/capillary_test.cpp and one_tube_test.cpp (Jurin, Washburn, Fries-Dreyer within 1 %).
+// Tested in tests/wetting/models_test.cpp and network_test.cpp (Jurin, Washburn, Fries-Dreyer within 1 %).
 #pragma once
 
 #include "imbibe/core/types.h"

@@ -8,7 +8,7 @@
 // crossing about as easy as one pitch along the yarn (what seed A's eta = 1 means); 0 cuts it. A yarn that does not wet
 // has no half link, so nothing crosses to it.
 // Source: seed A section 5.3 (eta D); geometry of the patch is an estimate (0.5 of the yarn's section).
-// Tested in tests/wetting/crossing_test.cpp.
+// Tested in tests/wetting/models_test.cpp.
 #pragma once
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 // Below 90 degrees a pore fills by itself but holds its liquid up to P_open; from 90 degrees on it stays shut up to the
 // breakthrough. 2 gamma |cos theta|/r_t would let a resting drop (50-70 Pa) leak through raw cotton (42 Pa at 95
 // degrees where round yarns give 330). The cap is Bosanquet's: the viscous law alone gives 6 m/s in an 86 um throat.
-// Tested in tests/wetting/entry_test.cpp against a table of both pressures.
+// Tested in tests/wetting/models_test.cpp against a table of both pressures.
 #pragma once
 
 #include "imbibe/core/types.h"

@@ -5,7 +5,7 @@
 // yarn without voids sorb from the pores beside it. Then vapour: while a node holds liquid it gives off at activity 1;
 // for the rest of the step its fibres exchange with the air through their own inner resistance. A pore gives off on the
 // part of its cell whose yarns are dry, so a cell with anything wet in it evaporates as one face.
-// Tested in tests/wetting/fibre_exchange_test.cpp.
+// Tested in tests/wetting/network_test.cpp (drying) and behaviour_test.cpp.
 #pragma once
 
 #include "imbibe/wetting/wetting_model.h"

@@ -9,7 +9,7 @@
 // Source: Guggenheim-Anderson-de Boer form as in van den Berg & Bruin 1981; values Morton & Hearle; the fallback is
 // the shape common to hygroscopic fibres. GAB is good to phi of about 0.9 and is used to 1.
 // Between the two branches a fibre neither takes up nor gives off vapour (scanning curves taken as flat).
-// Tested in tests/wetting/isotherm_test.cpp.
+// Tested in tests/wetting/models_test.cpp.
 #pragma once
 
 #include "imbibe/core/types.h"

@@ -10,7 +10,7 @@
 // taken in their eigenvectors, which belong to the number of shells alone: stable and without error in time.
 // A segment only partly wetted (saturation below `wetted_at`) sorbs from liquid on that share of its fibres.
 // Seed A's eq. 6 has no driving difference and so no equilibrium; it is not offered as a law of its own.
-// Tested in tests/wetting/sorption_test.cpp (Crank's values, equilibrium, steps composed against one long step).
+// Tested in tests/wetting/models_test.cpp (Crank's values, equilibrium, steps composed against one long step).
 #pragma once
 
 #include <span>

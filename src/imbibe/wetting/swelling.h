@@ -7,7 +7,7 @@
 // proportion. The cell's volume is kept: each pore shrinks by its share of its yarns' growth (not below `least_pore`
 // of its first volume), and what no longer fits leaves by pressure, not by a rule.
 // Source: Morton & Hearle (area swelling per fibre); constant packing is an assumption.
-// Tested in tests/wetting/swelling_test.cpp.
+// Tested in tests/wetting/models_test.cpp.
 #pragma once
 
 #include "imbibe/core/types.h"

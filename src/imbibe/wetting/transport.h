@@ -9,7 +9,7 @@
 // masses come from the flows, each computed once per edge, so they add up to rounding at any tolerance; a node that
 // this would leave below zero (by the tolerance) has its outflows cut to what it holds.
 // The maximum principle holds without gravity and supply: at the node of highest pressure every link flows outward.
-// Tested in tests/wetting/transport_test.cpp.
+// Tested in tests/wetting/network_test.cpp, spreading_test.cpp and behaviour_test.cpp.
 #pragma once
 
 #include <span>

@@ -4,7 +4,7 @@
 // over the other half. Transport takes liquid from `supplies` by complementarity: inflow = min(law x dt, available)
 // stands inside the equations, so nothing is rescaled afterwards. A step that does not converge is cut and repeated
 // inside; masses are updated from edge flows only, so they add up to rounding whatever the tolerance.
-// Tested in tests/wetting/wetting_step_test.cpp.
+// Tested in tests/wetting/network_test.cpp, spreading_test.cpp and behaviour_test.cpp.
 #pragma once
 
 #include <span>
