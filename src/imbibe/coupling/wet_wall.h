@@ -26,8 +26,7 @@ constexpr Real cos_wet_face(Real cos_theta, Real saturation) {
   return cos_theta + s * (filled - cos_theta);
 }
 
-// The slab of the sheet in the world. Only sheets that lie flat (normal along z, yarns along x and y) are shapes of
-// this kind; the scene reader refuses others.
+// The slab of the sheet in the world. Its directions lie along x, y and z in any order; the scene reader refuses others.
 Shape sheet_shape(const YarnNetwork& network, const Placement& placement);
 
 // A wall for one step; `shape`, `saturation` (per node) and the rest must outlive it.
