@@ -84,10 +84,10 @@ void draw_overlay(Image& image, const Frame& frame, const Camera& camera, Real g
   const Real margin = 1.6 * unit;
   if (!frame.title.empty()) {
     const Real room = image.width - 2 * margin;
-    TextStyle title{.height = fitted_text_height(frame.title, 1.35 * unit, room), .weight = 0.14};
+    TextStyle title{.height = fitted_text_height(frame.title, 1.35 * unit, room), .weight = 0.14, .halo_opacity = 0.8f};
     draw_text(image, margin, margin + 1.35 * unit, frame.title, title);
   }
-  const TextStyle time{.height = 1.05 * unit, .colour = {0.28f, 0.30f, 0.36f}};
+  const TextStyle time{.height = 1.05 * unit, .colour = {0.28f, 0.30f, 0.36f}, .halo_opacity = 0.8f};
   draw_text(image, margin, margin + (frame.title.empty() ? 1.1 : 3.5) * unit, time_label(frame.time), time);
   if (frame.yarns.yarns() > 0) {
     LegendLayout layout;
@@ -95,6 +95,9 @@ void draw_overlay(Image& image, const Frame& frame, const Camera& camera, Real g
     layout.top = static_cast<int>(std::max(0.20 * image.height, 5.5 * unit));
     layout.bottom = image.height - static_cast<int>(std::max(0.13 * image.height, 2 * unit));
     layout.text_height = unit;
+    // A veil behind it, for cameras that do not leave room.
+    const int left = layout.right - static_cast<int>(text_width(frame.quantity, unit) + 0.8 * unit);
+    fill_rectangle(image, left, layout.top - static_cast<int>(unit), image.width, layout.bottom + static_cast<int>(unit), {1, 1, 1}, 0.8f);
     draw_colour_bar(image, layout, frame.quantity, frame.quantity_unit);
   }
   draw_scale_bar(image, frame, camera, ground, unit);

@@ -6,6 +6,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/view/denoise.h"
 #include "imbibe/view/overlay.h"
 #include "imbibe/view/shading.h"
 
@@ -67,22 +68,23 @@ float rolled_off(float x) {
   return x <= knee ? x : knee + (1 - knee) * (1 - std::exp(-(x - knee) / (1 - knee)));
 }
 
-Vec3f pixel_light(const RayScene& scene, const Look& look, const Camera& camera, const PictureOptions& options, int x, int y,
-                  std::vector<Index>& touched) {
+TracedPixel pixel_light(const RayScene& scene, const Look& look, const Camera& camera, const PictureOptions& options,
+                        int x, int y, std::vector<Index>& touched) {
   const std::uint64_t pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(options.width) + static_cast<std::uint64_t>(x);
-  Vec3f sum{};
+  TracedPixel sum;
+  sum.surface = {};
   float sum_shown = 0, sum_squares = 0;
   int n = 0;
   while (n < options.samples) {
     const PixelSamples samples(pixel, static_cast<std::uint32_t>(n));
     const Pair at = samples.pair(for_position);
     const Vec3 direction = direction_through(camera, (x + 0.5 + tent(at.u)) / options.width, (y + 0.5 + tent(at.v)) / options.height);
-    Vec3f light = radiance(scene, look, {Vec3f(camera.eye), Vec3f(direction)}, samples, touched);
+    TracedPixel one = trace(scene, look, {Vec3f(camera.eye), Vec3f(direction)}, samples, touched);
     // A single bright sample would stay as a speck.
-    const float brightest = std::max({light.x, light.y, light.z});
-    if (brightest > 6) light *= 6 / brightest;
-    sum += light;
-    const float shown = srgb_from_linear(luminance(light));
+    const float brightest = std::max({one.light.x, one.light.y, one.light.z});
+    if (brightest > 6) one.light *= 6 / brightest;
+    sum.light += one.light, sum.surface += one.surface, sum.normal += one.normal, sum.depth += one.depth;
+    const float shown = srgb_from_linear(luminance(one.light));
     sum_shown += shown, sum_squares += shown * shown;
     ++n;
     if (n >= samples_at_least && (n & (n - 1)) == 0) {
@@ -92,7 +94,9 @@ Vec3f pixel_light(const RayScene& scene, const Look& look, const Camera& camera,
       if (variance < 1e-6f) break;
     }
   }
-  return sum / static_cast<float>(n);
+  const float share = 1 / static_cast<float>(n);
+  sum.light *= share, sum.surface *= share, sum.normal *= share, sum.depth *= share;
+  return sum;
 }
 
 void store(Image& image, int x, int y, Vec3f light, const PictureOptions& options) {
@@ -195,6 +199,7 @@ struct PictureSeries::State {
   PictureOptions options;
   int columns, rows;
   RayScene scene;
+  std::vector<TracedPixel> traced_pixels;   // of the last picture
   Image bare;                               // the last picture without lettering
   std::vector<std::uint8_t> shown;          // of every yarn point in the last picture
   std::vector<std::vector<Index>> touched;  // yarn points that went into each square, sorted
@@ -203,11 +208,16 @@ struct PictureSeries::State {
 
   State(Stage s, PictureOptions o)
       : stage(std::move(s)), options(std::move(o)), columns((options.width + tile - 1) / tile),
-        rows((options.height + tile - 1) / tile), bare(options.width, options.height),
+        rows((options.height + tile - 1) / tile),
+        traced_pixels(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height)), bare(options.width, options.height),
         touched(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
 
   std::vector<std::size_t> squares_to_trace(const std::vector<std::uint8_t>& now, const std::vector<char>& wet_now, bool still) const;
-  void trace(std::size_t square, const Look& look);
+  PixelBox box_of(std::size_t square) const;
+  void trace_square(std::size_t square, const Look& look);
+  // The squares themselves and those around them: their filtered pixels have changed.
+  std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& squares) const;
+  void finish_square(std::size_t square, const Look& look);
 };
 
 std::vector<std::size_t> PictureSeries::State::squares_to_trace(const std::vector<std::uint8_t>& now,
@@ -221,18 +231,49 @@ std::vector<std::size_t> PictureSeries::State::squares_to_trace(const std::vecto
   return squares;
 }
 
-void PictureSeries::State::trace(std::size_t square, const Look& look) {
+PixelBox PictureSeries::State::box_of(std::size_t square) const {
   const int x0 = static_cast<int>(square) % columns * tile, y0 = static_cast<int>(square) / columns * tile;
+  return {x0, y0, std::min(x0 + tile, options.width), std::min(y0 + tile, options.height)};
+}
+
+void PictureSeries::State::trace_square(std::size_t square, const Look& look) {
+  const PixelBox box = box_of(square);
   std::vector<Index>& points = touched[square];
   points.clear();
-  for (int y = y0; y < std::min(y0 + tile, options.height); ++y)
-    for (int x = x0; x < std::min(x0 + tile, options.width); ++x) {
-      store(bare, x, y, pixel_light(scene, look, stage.camera, options, x, y, points), options);
-      // Kept short as it grows: neighbouring pixels see the same few points.
-      if (points.size() > 4096) std::sort(points.begin(), points.end()), points.erase(std::unique(points.begin(), points.end()), points.end());
+  const auto keep_each_once = [&points] {
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  };
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x);
+      traced_pixels[pixel] = pixel_light(scene, look, stage.camera, options, x, y, points);
+      if (points.size() > 4096) keep_each_once();  // as it grows: neighbouring pixels see the same few points
     }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  keep_each_once();
+}
+
+std::vector<std::size_t> PictureSeries::State::with_neighbours(const std::vector<std::size_t>& squares) const {
+  static_assert(denoise_reach <= tile);
+  std::vector<char> marked(touched.size(), 0);
+  for (const std::size_t square : squares) {
+    const int x = static_cast<int>(square) % columns, y = static_cast<int>(square) / columns;
+    for (int j = std::max(0, y - 1); j <= std::min(rows - 1, y + 1); ++j)
+      for (int i = std::max(0, x - 1); i <= std::min(columns - 1, x + 1); ++i)
+        marked[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i)] = 1;
+  }
+  std::vector<std::size_t> result;
+  for (std::size_t t = 0; t < marked.size(); ++t)
+    if (marked[t]) result.push_back(t);
+  return result;
+}
+
+void PictureSeries::State::finish_square(std::size_t square, const Look& look) {
+  const PixelBox box = box_of(square);
+  const std::vector<Vec3f> light = denoised(traced_pixels, options.width, options.height, box, look.pixel_angle);
+  std::size_t n = 0;
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x) store(bare, x, y, light[n++], options);
 }
 
 PictureSeries::PictureSeries(Stage stage, PictureOptions options) : state_(new State(std::move(stage), std::move(options))) {
@@ -259,7 +300,9 @@ Image PictureSeries::draw(const Frame& frame) {
   WaterReach reach(s.stage, s.options, s.columns, s.rows);
   for (const Vec3f& p : frame.particles) reach.include(Vec3(p), 2.5 * frame.particle_spacing, look);
   const std::vector<std::size_t> squares = s.squares_to_trace(now, reach.squares(), still);
-  parallel_for(squares.size(), [&](std::size_t i) { s.trace(squares[i], look); }, 1);
+  parallel_for(squares.size(), [&](std::size_t i) { s.trace_square(squares[i], look); }, 1);
+  const std::vector<std::size_t> changed = s.with_neighbours(squares);
+  parallel_for(changed.size(), [&](std::size_t i) { s.finish_square(changed[i], look); }, 4);
   s.traced = squares.size();
   s.shown = std::move(now);
   s.wet = reach.squares();

@@ -55,9 +55,9 @@ Vec3f studio(const Look& look, const Vec3f& direction) {
   const float ahead = dot(direction, look.to_window);
   Vec3f seen = sky(look, direction);
   if (ahead > 0) {
-    const float x = dot(direction, basis.a) / ahead, y = dot(direction, basis.b) / ahead, half = 0.30f;
-    const float box = (1 - smoothstep(half - 0.03f, half, std::abs(x))) * (1 - smoothstep(half - 0.03f, half, std::abs(y)));
-    seen += (look.style == PictureStyle::diagram ? Vec3f{1, 1, 1} * 9.0f : look.light * 5.0f) * box;
+    const float x = dot(direction, basis.a) / ahead, y = dot(direction, basis.b) / ahead, half = 0.20f;
+    const float box = (1 - smoothstep(half - 0.02f, half, std::abs(x))) * (1 - smoothstep(half - 0.02f, half, std::abs(y)));
+    seen += (look.style == PictureStyle::diagram ? Vec3f{1, 1, 1} * 16.0f : look.light * 34.0f) * box;
   }
   return seen;
 }
@@ -199,12 +199,20 @@ Vec3f background(const Look& look, const Vec3f& direction) {
 }
 
 // Light along a ray that meets no water.
-Vec3f opaque_radiance(const Trace& trace, const Ray& ray, const SolidHit* hit, float limit, bool mirrored) {
+Vec3f opaque_radiance(const Trace& trace, const Ray& ray, const SolidHit* hit, float limit, bool mirrored,
+                      TracedPixel* first) {
   const Look& look = trace.look;
-  if (hit) return shade(trace.scene, look, surface_of(trace, ray, *hit), ray.direction, trace.samples);
+  if (hit) {
+    const Surface surface = surface_of(trace, ray, *hit);
+    if (first) first->surface = surface.colour, first->normal = hit->normal, first->depth = hit->distance;
+    return shade(trace.scene, look, surface, ray.direction, trace.samples);
+  }
   const float drop = look.ground_height - ray.origin.z;
   const float distance = ray.direction.z < -1e-6f ? drop / ray.direction.z : -1;
-  if (distance > 0 && distance < limit) return ground_seen(trace.scene, look, ray, distance, trace.samples);
+  if (distance > 0 && distance < limit) {
+    if (first) first->surface = look.ground, first->normal = {0, 0, 1}, first->depth = distance;
+    return ground_seen(trace.scene, look, ray, distance, trace.samples);
+  }
   return mirrored ? studio(look, ray.direction) : background(look, ray.direction);
 }
 
@@ -228,7 +236,7 @@ Bend bend_at(const Vec3f& direction, const LiquidHit& hit) {
 Vec3f reflected_radiance(const Trace& trace, const Ray& ray) {
   SolidHit hit;
   const bool met = trace.scene.meets_solid(ray, far_away, hit);
-  return opaque_radiance(trace, ray, met ? &hit : nullptr, far_away, true);
+  return opaque_radiance(trace, ray, met ? &hit : nullptr, far_away, true, nullptr);
 }
 
 }  // namespace
@@ -245,7 +253,7 @@ float fresnel_reflectance(float cosine, float n1, float n2) {
 Vec3f wet_colour(const Vec3f& dry, float saturation) {
   const float s = std::clamp(saturation, 0.0f, 1.0f);
   const float wet = s * (2 - s);  // most of the darkening comes with the first water
-  const float power = 1 + 1.1f * wet, scale = 1 - 0.30f * wet;
+  const float power = 1 + 1.4f * wet, scale = 1 - 0.34f * wet;
   return Vec3f{std::pow(dry.x, power), std::pow(dry.y, power), std::pow(dry.z, power)} * scale;
 }
 
@@ -282,7 +290,7 @@ Look look_for(const LookInput& in) {
     look.sky_horizon = Vec3f{1.0f, 0.90f, 0.78f} * 0.20f;
     look.returned = Vec3f{0.075f, 0.062f, 0.050f};
     look.ground = Vec3f{0.235f, 0.150f, 0.098f};
-    look.water_absorption = Vec3f{0.22f, 0.085f, 0.06f} / depth;
+    look.water_absorption = Vec3f{0.10f, 0.035f, 0.025f} / depth;
     look.water_scattered = {};
   }
   return look;
@@ -297,11 +305,13 @@ float shown_value(PictureStyle style, std::uint8_t shown) {
   return static_cast<float>(shown) / (style == PictureStyle::diagram ? 10.0f : 32.0f);
 }
 
-Vec3f radiance(const RayScene& scene, const Look& look, const Ray& first, const PixelSamples& samples,
-               std::vector<Index>& touched) {
+TracedPixel trace(const RayScene& scene, const Look& look, const Ray& from_camera, const PixelSamples& samples,
+                  std::vector<Index>& touched) {
   const Trace trace{scene, look, samples, touched};
-  Ray ray = first;
-  Vec3f seen{}, share{1, 1, 1};
+  TracedPixel result;
+  Ray ray = from_camera;
+  Vec3f seen{}, share{1, 1, 1}, water_normal{};
+  float way_before = 0;
   for (int interface = 0; interface < most_interfaces; ++interface) {
     SolidHit solid;
     const bool met_solid = scene.meets_solid(ray, far_away, solid);
@@ -309,8 +319,15 @@ Vec3f radiance(const RayScene& scene, const Look& look, const Ray& first, const 
     LiquidHit water;
     const bool met_water = scene.meets_liquid(ray, limit, water);
     // A solid, or the open, reached from inside the water: its way is taken off below, when the water's end is found.
-    if (!met_water)
-      return seen + product(share, opaque_radiance(trace, ray, met_solid ? &solid : nullptr, far_away, interface > 0));
+    if (!met_water) {
+      const Vec3f behind = opaque_radiance(trace, ray, met_solid ? &solid : nullptr, far_away, interface > 0, &result);
+      result.light = seen + product(share, behind);
+      result.normal += water_normal;  // the filter keeps the outline of a drop as an edge
+      result.depth += way_before;
+      return result;
+    }
+    if (interface == 0) water_normal = water.normal;
+    way_before += water.distance;
     const Vec3f at = ray.origin + ray.direction * water.distance;
     const Bend bend = bend_at(ray.direction, water);
     if (water.entering) {
@@ -338,7 +355,8 @@ Vec3f radiance(const RayScene& scene, const Look& look, const Ray& first, const 
     seen += product(share, product(Vec3f{1, 1, 1} - through, look.water_scattered));
     share = product(share, through);
   }
-  return seen + product(share, look.returned);
+  result.light = seen + product(share, look.returned);
+  return result;
 }
 
 }  // namespace imbibe

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "imbibe/scene/picture_options.h"
+#include "imbibe/view/denoise.h"
 #include "imbibe/view/pixel_samples.h"
 #include "imbibe/view/ray_scene.h"
 
@@ -42,9 +43,10 @@ struct LookInput {
 };
 Look look_for(const LookInput& input);
 
-// `touched` collects the yarn points whose saturation went into the result (with repetitions).
-Vec3f radiance(const RayScene& scene, const Look& look, const Ray& ray, const PixelSamples& samples,
-               std::vector<Index>& touched);
+// What one camera sample brings back: light, and the first surface behind any water (denoise.h).
+// `touched` collects the yarn points whose saturation went into it (with repetitions).
+TracedPixel trace(const RayScene& scene, const Look& look, const Ray& ray, const PixelSamples& samples,
+                  std::vector<Index>& touched);
 
 // What of a saturation is visible, as a small whole number: seed A's level in a diagram, steps of 1/32 in the natural
 // style. Pictures depend on saturations through this alone, so a film redraws only where it has changed.
