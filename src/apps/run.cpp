@@ -12,6 +12,7 @@
 
 #include "apps/commands.h"
 #include "imbibe/core/error.h"
+#include "imbibe/core/output_file.h"
 #include "imbibe/core/parallel.h"
 #include "imbibe/io/progress.h"
 #include "imbibe/io/report.h"
@@ -117,6 +118,9 @@ class RunSession {
     RunHooks hooks;
     hooks.at_output = [&](const World& world, const StepReport& report) { write(world, report); };
     hooks.after_step = [&](const World& world, const StepReport& report) {
+      liquid_s_ += report.liquid_wall_s, wetting_s_ += report.wetting_wall_s;
+      moved_ += report.liquid_moved, wetted_ += report.wetting_ran;
+      peak_density_error_ = std::max(peak_density_error_, report.peak_density_error);
       progress.show(progress_of(world, report, plan.until, seconds_since(started_)));
       if (seconds_since(last_checkpoint_) < scene_.output.checkpoint_every.value_or(60)) return;
       folder_->write_checkpoint(world);
@@ -134,11 +138,10 @@ class RunSession {
       progress.finish();
       close(RunStatus::failed, error.what());
       throw;
-    } catch (const InputError& error) {  // the machine: a full disk, a vanished folder, a limit
-      progress.finish();
-      std::fprintf(stderr, "%s\n", error.what());
-      close_quietly(error.what());
-      return 1;
+    } catch (const OutputError& error) {  // a full disk, a vanished folder
+      return fail(progress, error.what());
+    } catch (const InputError& error) {  // a limit of the scene
+      return fail(progress, error.what());
     }
   }
 
@@ -152,10 +155,14 @@ class RunSession {
   }
 
   void write(const World& world, const StepReport& report) {
+    const auto start = std::chrono::steady_clock::now();
     folder_->write_output(world, report);
-    if (pictures_)
+    // A resumed run starts at a checkpoint, between two output times: that state is not one of the film.
+    const Real frames = world.time / output_interval(scene_);
+    if (pictures_ && (world.time >= scene_.duration || std::abs(frames - std::round(frames)) < 1e-6))
       pictures_->add(frame_from_world(world, scene_.title),
-                     static_cast<int>(std::lround(world.time / output_interval(scene_))));
+                     static_cast<int>(std::ceil(frames - 1e-6)));
+    output_s_ += seconds_since(start);
   }
 
   void close(RunStatus status, const std::string& reason) {
@@ -165,12 +172,23 @@ class RunSession {
     const fs::path report = write_report(folder_path_);
     std::printf("%s after %.1f s of wall time\n", status == RunStatus::done ? "done" : reason.c_str(),
                 seconds_since(started_));
+    std::printf("  of it       liquid %.1f s (%llu steps), network %.1f s (%llu steps), files and pictures %.1f s\n", liquid_s_,
+                static_cast<unsigned long long>(moved_), wetting_s_, static_cast<unsigned long long>(wetted_), output_s_);
+    if (moved_ > 0)
+      std::printf("  liquid      largest compression of a particle %.2g %%\n", 100 * peak_density_error_);
     std::printf("  run folder  %s\n  report      %s\n", folder_path_.c_str(), report.c_str());
     if (pictures_) std::printf("  pictures    %s\n", (folder_path_ / "pictures").c_str());
     std::printf("  film        %s\n", film.message.c_str());
     std::printf("  ParaView    %s (and textile_*.pvd)\n", (folder_path_ / "liquid.pvd").c_str());
     if (status == RunStatus::interrupted)
       std::printf("  go on with  imbibe run %s --resume\n", folder_path_.c_str());
+  }
+
+  int fail(ProgressWriter& progress, const char* reason) {
+    progress.finish();
+    std::fprintf(stderr, "error: %s\n", reason);
+    close_quietly(reason);
+    return 1;
   }
 
   // The disk may be full: what can be said is said, what cannot be written stays as it last was.
@@ -187,6 +205,8 @@ class RunSession {
   World world_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RunPictures> pictures_;
+  double liquid_s_ = 0, wetting_s_ = 0, output_s_ = 0, peak_density_error_ = 0;
+  std::uint64_t moved_ = 0, wetted_ = 0;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_;
 };
 
@@ -210,7 +230,8 @@ void add_run_command(CLI::App& app, CommandContext& context) {
   command->callback([arguments, &context] {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
-    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);  // a film encoder that dies is an error return
+    std::signal(SIGXFSZ, SIG_IGN);  // so is a file that may not grow
     std::unique_ptr<ThreadLimit> limit;
     if (arguments->threads > 0) limit = std::make_unique<ThreadLimit>(arguments->threads);
     context.exit_code = RunSession(*arguments, context).go();

@@ -26,6 +26,7 @@ void clear(Footprint& f, std::size_t nodes) {
 
 // Links of one touching particle at sheet position p, and its share of the wetted area of the nodes.
 void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Real particle_area, Footprint& f) {
+  const bool below = p.z < 0;
   const std::size_t begin = f.links.size();
   Real total = 0;
   map.near(p.x, p.y, [&](Index k) {
@@ -36,8 +37,9 @@ void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Re
     total += f.links.back().share;
     if (f.supply_of_node[k] == no_index) {
       f.supply_of_node[k] = static_cast<Index>(f.supplies.size());
-      f.supplies.push_back({.node = k});
+      f.supplies.push_back({.node = k, .from_below = below});
     }
+    if (!below) f.supplies[f.supply_of_node[k]].from_below = false;  // wetted from both faces: gravity helps
     f.supplies[f.supply_of_node[k]].wetted_share += particle_area * w;
   });
   for (std::size_t l = begin; l < f.links.size(); ++l) f.links[l].share /= total;

@@ -9,6 +9,7 @@
 #include "imbibe/coupling/absorption.h"
 #include "imbibe/coupling/release.h"
 #include "imbibe/coupling/wet_wall.h"
+#include "imbibe/sim/measures.h"
 
 namespace imbibe {
 namespace {
@@ -39,6 +40,11 @@ void emit_sources(World& world, StepReport& report) {
   if (report.emitted > 0) world.pace.resting = false, world.pace.calm_since = -1;
 }
 
+void show_saturations(const Textile& textile, const Air& air, std::vector<float>& shown) {
+  const std::vector<Real> saturations = node_saturations(textile, air);
+  shown.assign(saturations.begin(), saturations.end());
+}
+
 void build_walls(const World& world, StepScratch& scratch) {
   scratch.walls.clear();
   for (const SolidBody& solid : world.solids) {
@@ -56,8 +62,7 @@ void build_walls(const World& world, StepScratch& scratch) {
     std::vector<float>& s = scratch.saturation[t];
     if (s.size() != textile.fabric->network.nodes()) {  // new scratch; kept current by exchange()
       s.resize(textile.fabric->network.nodes());
-      for (std::size_t k = 0; k < s.size(); ++k)
-        s[k] = static_cast<float>(saturation(*textile.model, textile.contents, k));
+      show_saturations(textile, world.air, s);
     }
     scratch.walls.push_back(
         wet_wall(scratch.sheets[t], textile.fabric->network, textile.placement, *textile.faces, s));
@@ -146,8 +151,7 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   report.released += released.particles;
   if (released.particles > 0) world.pace.resting = false;
   if (index < scratch.saturation.size())
-    for (std::size_t k = 0; k < scratch.saturation[index].size(); ++k)
-      scratch.saturation[index][k] = static_cast<float>(saturation(*textile.model, textile.contents, k));
+    show_saturations(textile, world.air, scratch.saturation[index]);
 }
 
 void exchange_all(World& world, Real dt, StepScratch& scratch, StepReport& report) {
