@@ -8,6 +8,8 @@
 // 4 |G| tau V adds up to the length of the line: 1/2 across the line, 1/2 normal to the wall.
 // A dry wall is not liquid (beta = 0), else drops stick below overhangs. In the first layer the surface's normal is the
 // one of the actual angle, e sin th_a - m cos th_a: there the colour has a kink that curvature must not see.
+// A film of one layer has no measurable interface in reach: its angle counts as 0, so it withdraws where theta > 0 (else
+// a receding line leaves it behind).
 // Hysteresis: no line force while the actual angle is between receding and advancing.
 // Friction of the line: particles at the line feel drag line_friction sqrt(gamma dx/rho) |G|/d [1/s].
 // Source: idea of the line force, Huber et al., J. Comput. Phys. 310 (2016) 459; Young 1805.
@@ -24,7 +26,7 @@ namespace imbibe {
 
 struct ContactAngleParams {
   Real wet_from = 0.4, wet_to = 0.8;  // lo, hi
-  Real line_friction = 0.3;
+  Real line_friction = 0.6;
 };
 
 template <class V>

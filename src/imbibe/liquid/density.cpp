@@ -53,7 +53,8 @@ float density_error(float colour, float wall_lambda, float gradient_h) {
   // At a contact line neither part is known: there only compression counts.
   const float at_line = std::clamp((wall_lambda - 0.02f) / 0.1f, 0.0f, 1.0f) *
                         std::clamp((gradient_h - surface_gradient_h) / 0.4f, 0.0f, 1.0f);
-  return completed + at_line * (std::max(0.0f, filling - 1) - completed);
+  const float known = filling > 1 ? filling - 1 : std::min(completed, 0.0f);
+  return completed + at_line * (known - completed);
 }
 
 void compute_density(LiquidFields& f) {

@@ -135,7 +135,7 @@ void extend(const Stage& t, std::size_t i) {
 struct NearInterface {
   Vec3f normal{};
   float curvature = 0, height = 0;  // of those particles over the wall
-  bool found = false;
+  float trust = 0;                  // 0: no such particle is near
 };
 
 NearInterface near_interface(const Stage& t, std::size_t i, const WallSample& wall) {
@@ -153,7 +153,7 @@ NearInterface near_interface(const Stage& t, std::size_t i, const WallSample& wa
   if (weights <= 1e-6f) return seen;
   seen.normal = normalized(seen.normal);
   seen.curvature /= weights, seen.height /= weights;
-  seen.found = true;
+  seen.trust = ramp(weights, 0, 0.004f);
   return seen;
 }
 
@@ -175,14 +175,16 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall, float 
   const float length = norm(along), tau = length / std::max(1 - wall.lambda, 0.1f);
   // 0 for spray on the wall (little colour), inside (filled) and where nothing points along the wall.
   const float activity =
-      ramp(f.colour[i], 0.25f, 0.35f) * ramp(-f.filling[i], -0.97f, -0.93f) * ramp(tau * support, 0.2f, 0.4f);
+      ramp(f.colour[i], 0.22f, 0.28f) * ramp(-f.filling[i], -0.97f, -0.93f) * ramp(tau * support, 0.2f, 0.4f);
   if (activity == 0) return pull;
   const NearInterface seen = near_interface(t, i, wall);
-  if (!seen.found) return pull;
   const Vec3f inward = along / length;
   const float kappa = t.corrected(seen.curvature);
-  const float cosine =
+  // Without an interface in reach i belongs to a film of one layer: its angle is 0, it withdraws. Otherwise a receding
+  // line leaves such a film behind.
+  const float extrapolated =
       std::clamp(-(dot(seen.normal, wall.normal) + 0.5f * seen.height * kappa), -1.0f, 1.0f);
+  const float cosine = 1 + seen.trust * (extrapolated - 1);
   const float sine = std::sqrt(1 - cosine * cosine);
   pull.activity = activity;
   pull.normal = (inward * sine - wall.normal * cosine) * (tau / std::max(sine, 0.35f));
