@@ -10,7 +10,7 @@ namespace imbibe {
 namespace {
 
 // |n| H below which a particle is inside and carries no surface force.
-constexpr float carries_force = 0.02f;
+constexpr float carries_force = 0.05f;
 
 Vec3f xyz(const Float4& v) { return {v.x, v.y, v.z}; }
 
