@@ -29,7 +29,7 @@ struct CameraOptions {
 struct PictureOptions {
   PictureStyle style = PictureStyle::diagram;
   int width = 1280, height = 720;
-  int samples = 8;              // rays per pixel
+  int samples = 4;              // rays per pixel; a denoiser follows, 16 or more for print
   CameraOptions camera;
   bool legend = true;           // diagram: colour bar, scale bar, time and title
   bool film = true;             // film.mp4 from the pictures, where ffmpeg is present

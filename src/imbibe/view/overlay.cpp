@@ -95,9 +95,12 @@ void draw_overlay(Image& image, const Frame& frame, const Camera& camera, Real g
     layout.top = static_cast<int>(std::max(0.20 * image.height, 5.5 * unit));
     layout.bottom = image.height - static_cast<int>(std::max(0.13 * image.height, 2 * unit));
     layout.text_height = unit;
-    // A veil behind it, for cameras that do not leave room.
-    const int left = layout.right - static_cast<int>(text_width(frame.quantity, unit) + 0.8 * unit);
-    fill_rectangle(image, left, layout.top - static_cast<int>(unit), image.width, layout.bottom + static_cast<int>(unit), {1, 1, 1}, 0.8f);
+    // A veil behind it that begins softly, for cameras that do not leave room.
+    const int left = layout.right - static_cast<int>(text_width(frame.quantity, unit) + 2.5 * unit);
+    for (int x = left; x < image.width; ++x) {
+      const float veil = std::min(0.8f, static_cast<float>((x - left) / (4 * unit)));
+      fill_rectangle(image, x, layout.top - static_cast<int>(unit), x + 1, layout.bottom + static_cast<int>(unit), {1, 1, 1}, veil);
+    }
     draw_colour_bar(image, layout, frame.quantity, frame.quantity_unit);
   }
   draw_scale_bar(image, frame, camera, ground, unit);

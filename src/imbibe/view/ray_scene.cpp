@@ -124,7 +124,6 @@ bool RayScene::Parts::stands_still(const Frame& frame) const {
 void RayScene::Parts::build_solids() {
   parts.clear(), pieces.clear();
   solids.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(solids.get(), RTC_SCENE_FLAG_ROBUST);
   for (const DrawnSolid& solid : drawn_solids) {
     DrawnMesh mesh = solid.mesh.triangles.empty() ? mesh_of(solid.shape) : solid.mesh;
     if (!mesh.triangles.empty()) parts.push_back({std::move(mesh), solid.colour});
@@ -144,7 +143,7 @@ void RayScene::Parts::build_solids() {
 void RayScene::Parts::build_liquid(const Frame& frame) {
   liquid_mesh = frame.particles.empty() ? DrawnMesh{} : liquid_surface(frame.particles, frame.particle_spacing);
   liquid.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(liquid.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(liquid.get(), RTC_SCENE_FLAG_ROBUST);  // a ray that slips between two faces would never leave it
   if (!liquid_mesh.triangles.empty()) attach_mesh(device.get(), liquid.get(), liquid_mesh, 0);
   const ThreadLimit one(1);
   rtcCommitScene(liquid.get());

@@ -80,7 +80,7 @@ Lighting lighting_at(const RayScene& scene, const Look& look, const Surface& s, 
   const float facing = dot(to_light, s.normal);
   if (facing > 0 && dot(to_light, s.flat_normal) > 0 && !scene.solid_between({start, to_light}, far_away)) {
     // Water gathers as much light as it keeps off; a part is reflected away.
-    result.light_seen = scene.liquid_between({start, to_light}, far_away) ? 0.8f : 1.0f;
+    result.light_seen = scene.liquid_between({start, to_light}, far_away) ? 0.92f : 1.0f;
     result.diffuse += look.light * (facing * result.light_seen);
   }
   const Vec3f up = cosine_direction(s.normal, samples.pair(for_sky));
@@ -253,7 +253,7 @@ float fresnel_reflectance(float cosine, float n1, float n2) {
 Vec3f wet_colour(const Vec3f& dry, float saturation) {
   const float s = std::clamp(saturation, 0.0f, 1.0f);
   const float wet = s * (2 - s);  // most of the darkening comes with the first water
-  const float power = 1 + 1.4f * wet, scale = 1 - 0.34f * wet;
+  const float power = 1 + 1.2f * wet, scale = 1 - 0.30f * wet;
   return Vec3f{std::pow(dry.x, power), std::pow(dry.y, power), std::pow(dry.z, power)} * scale;
 }
 
@@ -290,7 +290,7 @@ Look look_for(const LookInput& in) {
     look.sky_horizon = Vec3f{1.0f, 0.90f, 0.78f} * 0.20f;
     look.returned = Vec3f{0.075f, 0.062f, 0.050f};
     look.ground = Vec3f{0.235f, 0.150f, 0.098f};
-    look.water_absorption = Vec3f{0.10f, 0.035f, 0.025f} / depth;
+    look.water_absorption = Vec3f{0.06f, 0.020f, 0.015f} / depth;
     look.water_scattered = {};
   }
   return look;
