@@ -142,8 +142,13 @@ TEST(BadScene, TwoTextilesOfOneNameAreRefused) {
 }
 
 TEST(BadScene, DirectionsThatAreNotSquareAreRefused) {
-  expect_one(problems_of(with_line(16, "    warp_direction: [1, 1, 0]")), 16, 21, "textiles[0].warp_direction",
+  expect_one(problems_of(with_line(16, "    warp_direction: [1, 0, 0]")), 16, 21, "textiles[0].warp_direction",
              "not square");
+}
+
+TEST(BadScene, ASkewedSheetIsRefused) {
+  expect_one(problems_of(with_line(16, "    warp_direction: [0, 1, 1]")), 16, 21, "textiles[0].warp_direction",
+             "one component, two zeros");
 }
 
 TEST(BadScene, AnIncompleteSolidNamesWhatIsMissing) {
