@@ -253,7 +253,7 @@ float fresnel_reflectance(float cosine, float n1, float n2) {
 Vec3f wet_colour(const Vec3f& dry, float saturation) {
   const float s = std::clamp(saturation, 0.0f, 1.0f);
   const float wet = s * (2 - s);  // most of the darkening comes with the first water
-  const float power = 1 + 1.2f * wet, scale = 1 - 0.30f * wet;
+  const float power = 1 + 1.2f * wet, scale = 1 - 0.38f * wet;
   return Vec3f{std::pow(dry.x, power), std::pow(dry.y, power), std::pow(dry.z, power)} * scale;
 }
 
@@ -285,7 +285,7 @@ Look look_for(const LookInput& in) {
     look.to_light = normalized(in.right * -0.62f + ahead * 0.55f + Vec3f{0, 0, 1.0f});
     look.to_window = normalized(in.right * -0.75f + ahead * -0.35f + Vec3f{0, 0, 1.0f});
     look.light_size = 0.22f;
-    look.light = Vec3f{1.0f, 0.91f, 0.78f} * 0.98f;
+    look.light = Vec3f{1.0f, 0.92f, 0.80f} * 1.18f;
     look.sky_up = Vec3f{0.80f, 0.90f, 1.0f} * 0.36f;
     look.sky_horizon = Vec3f{1.0f, 0.90f, 0.78f} * 0.20f;
     look.returned = Vec3f{0.075f, 0.062f, 0.050f};
