@@ -48,6 +48,7 @@ float ramp(float value, float from, float to) { return std::clamp((value - from)
 
 // Wetness of the wall of one sample: the kernel sum of i's neighbourhood at the foot point.
 float wetness_of(const Stage& t, std::size_t i, const WallSample& wall) {
+  if (t.f.filling[i] > 0.97f) return 1;  // liquid all around, down to the wall
   const Vec3f foot = wall.normal * wall.distance;  // x_i - x_F
   float sum = t.weight(norm(foot));
   each_neighbour(t.f, i, [](Index) { return true; },
