@@ -10,7 +10,7 @@
 // Pressure may be negative: nothing is clamped, so the surface is not compressed and suction acts. What a separating
 // spray may not do is pull itself together: particles with little filling have k = 0.
 // tau = density_time: errors of density fade with that time constant instead of being kicked out in one step (which
-// heats the liquid).
+// heats the liquid). The step by default gives them to a displacement instead (liquid_step.h) and solves here with e = 0.
 // Sources: Bender & Koschier, IEEE TVCG 23 (2017) 1193 (operators); Asai et al., Int. J. Numer. Meth. Eng. 93 (2012)
 // (mixed source); transposed pair and its conservation of momentum: Cummins & Rudman, J. Comput. Phys. 152 (1999) 584.
 // Tested in tests/liquid/pressure_test.cpp and tests/liquid/drop_test.cpp.
