@@ -22,7 +22,6 @@ struct Scene {
   Scene() {
     liquid.particle_mass = 998.2 * std::pow(0.5e-3, 3);
     map = build_face_map(fabric.network, liquid.spacing());
-    exchange.owed_kg.assign(fabric.network.nodes(), 0);
     exchange.waiting_kg.assign(fabric.network.nodes(), 0);
   }
   // A layer of particles that touches the face, side x side, centred on (x, y).
@@ -33,7 +32,10 @@ struct Scene {
         add_particle(liquid, {x + (i - 0.5 * (side - 1)) * dx, y + (j - 0.5 * (side - 1)) * dx, z}, {0, 0, -0.1});
   }
   void find() { find_footprint(liquid, fabric.network, placement, map, exchange, footprint); }
-  Real owed() const { return std::accumulate(exchange.owed_kg.begin(), exchange.owed_kg.end(), 0.0); }
+  Real owed() const {
+    const std::vector<Real>& kg = liquid.particles.owed_kg;
+    return std::accumulate(kg.begin(), kg.end(), 0.0);
+  }
 };
 
 TEST(Footprint, SharesOfEveryTouchingParticleSumToOne) {
@@ -51,10 +53,7 @@ TEST(Footprint, SharesOfEveryTouchingParticleSumToOne) {
 TEST(Footprint, AvailableMassIsTheMassOfTheTouchingParticlesLessTheirDebt) {
   Scene s;
   s.add_layer(8, 0, 0);
-  s.exchange.owed_kg[s.map.node.front()] = 0;  // outside the footprint
-  s.find();
-  const Index node = s.footprint.supplies.front().node;
-  s.exchange.owed_kg[node] = 3.5 * s.liquid.particle_mass;
+  for (const std::size_t i : {3, 17, 40, 41, 42}) s.liquid.particles.owed_kg[i] = 0.7 * s.liquid.particle_mass;
   s.find();
   Real available = 0;
   for (const FaceSupply& supply : s.footprint.supplies) available += supply.available_kg;
@@ -105,7 +104,7 @@ TEST(Absorption, ParticlesDieForWholeMassesOnlyAndTheBooksAddUp) {
   std::vector<Real> taken(s.footprint.supplies.size());
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = 0.07 * s.footprint.supplies[i].available_kg;
   const Real sum = std::accumulate(taken.begin(), taken.end(), 0.0);  // 0.07 * 64 = 4.48 particles
-  book_taken(s.footprint, taken, s.exchange);
+  book_taken(s.footprint, taken, s.liquid.particles, s.exchange);
   std::vector<std::uint8_t> dead(64, 0);
   const Transfer transfer = absorb_particles(s.liquid, s.footprint, s.exchange, dead);
   EXPECT_EQ(transfer.particles, 4u);
@@ -116,17 +115,30 @@ TEST(Absorption, ParticlesDieForWholeMassesOnlyAndTheBooksAddUp) {
   EXPECT_EQ(s.liquid.particles.size(), 60u);
 }
 
+TEST(Absorption, DebtsMoveWithTheirParticle) {
+  Scene s;
+  s.add_layer(1, -4e-3, 0);
+  s.find();
+  std::vector<Real> taken(s.footprint.supplies.size());
+  for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = 0.6 * s.footprint.supplies[i].available_kg;
+  book_taken(s.footprint, taken, s.liquid.particles, s.exchange);
+  s.liquid.particles.position[0].x += 8e-3f;  // it slides on to where no node was covered
+  s.find();
+  Real available = 0;
+  for (const FaceSupply& supply : s.footprint.supplies) available += supply.available_kg;
+  EXPECT_NEAR(available, 0.4 * s.liquid.particle_mass, 1e-12 * s.liquid.particle_mass);
+}
+
 TEST(Absorption, LiquidGivenBackPaysDebtsFirstAndThenWaits) {
   Scene s;
-  s.add_layer(2, 0, 0);
+  s.add_layer(1, 0, 0);
+  s.liquid.particles.owed_kg[0] = 2e-9;
   s.find();
-  const Index node = s.footprint.supplies[0].node;
-  s.exchange.owed_kg[node] = 2e-9;
   std::vector<Real> taken(s.footprint.supplies.size(), 0);
   taken[0] = -5e-9;
-  book_taken(s.footprint, taken, s.exchange);
-  EXPECT_EQ(s.exchange.owed_kg[node], 0);
-  EXPECT_NEAR(s.exchange.waiting_kg[node], 3e-9, 1e-24);
+  book_taken(s.footprint, taken, s.liquid.particles, s.exchange);
+  EXPECT_EQ(s.owed(), 0);
+  EXPECT_NEAR(std::accumulate(s.exchange.waiting_kg.begin(), s.exchange.waiting_kg.end(), 0.0), 3e-9, 1e-23);
 }
 
 TEST(Release, WaitingMassBecomesParticlesBelowTheSheetAndNothingIsRounded) {

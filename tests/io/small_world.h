@@ -24,7 +24,6 @@ inline Textile small_textile(const std::string& name, std::shared_ptr<const Fabr
   textile.fabric = std::move(fabric);
   textile.model = std::make_shared<const WettingModel>(build_wetting_model(textile.fabric->network, {}, {}));
   textile.contents = conditioned_contents(*textile.model, air);
-  textile.exchange.owed_kg.assign(textile.model->nodes(), 0);
   textile.exchange.waiting_kg.assign(textile.model->nodes(), 0);
   return textile;
 }

@@ -71,7 +71,6 @@ World built_world() {
   world.textiles[1].contents.shell_regain.resize(21 * 12);
   world.textiles[0].contents.reached_saturation.resize(30);
   for (std::size_t i = 0; i < 2; ++i) {
-    world.textiles[i].exchange.owed_kg.resize(30 + i);
     world.textiles[i].exchange.waiting_kg.resize(30 + i);
   }
   world.liquid.particle_mass = 2.05e-7;

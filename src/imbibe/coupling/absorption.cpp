@@ -4,13 +4,17 @@
 
 namespace imbibe {
 
-void book_taken(const Footprint& footprint, std::span<const Real> taken_kg, ExchangeState& exchange) {
-  for (std::size_t s = 0; s < footprint.supplies.size(); ++s) {
-    const Index node = footprint.supplies[s].node;
-    Real& owed = exchange.owed_kg[node];
-    owed += taken_kg[s];
+void book_taken(const Footprint& f, std::span<const Real> taken_kg, Particles& particles, ExchangeState& exchange) {
+  std::vector<Real> cover(f.supplies.size(), 0);
+  for (const FootprintLink& link : f.links) cover[f.supply_of_node[link.node]] += link.share;
+  for (std::size_t p = 0; p < f.particle.size(); ++p) {
+    Real& owed = particles.owed_kg[f.particle[p]];
+    for (Index l = f.first_link[p]; l < f.first_link[p + 1]; ++l) {
+      const Index s = f.supply_of_node[f.links[l].node];
+      owed += taken_kg[s] * (f.links[l].share / cover[s]);
+    }
     if (owed < 0) {
-      exchange.waiting_kg[node] -= owed;
+      exchange.waiting_kg[f.links[f.first_link[p]].node] -= owed;
       owed = 0;
     }
   }
@@ -18,39 +22,51 @@ void book_taken(const Footprint& footprint, std::span<const Real> taken_kg, Exch
 
 namespace {
 
-// The debt over each touching particle: a node's debt is split over the particles above it by their shares.
-std::vector<Real> debts(const Footprint& f, const ExchangeState& exchange) {
-  std::vector<Real> cover(f.supplies.size(), 0), debt(f.particle.size(), 0);
-  for (const FootprintLink& link : f.links) cover[f.supply_of_node[link.node]] += link.share;
+// Passes what is left of the patches' debts to their survivors: each owes in proportion to what it owed.
+void pass_on_debts(const Liquid& liquid, const Footprint& f, std::span<const std::size_t> dying,
+                   std::span<const Real> total, std::span<const std::uint8_t> dead, std::vector<Real>& owed_kg,
+                   ExchangeState& exchange) {
+  std::vector<Real> surviving(f.patches.size(), 0);
   for (std::size_t p = 0; p < f.particle.size(); ++p)
-    for (Index l = f.first_link[p]; l < f.first_link[p + 1]; ++l) {
-      const FootprintLink& link = f.links[l];
-      debt[p] += exchange.owed_kg[link.node] * link.share / cover[f.supply_of_node[link.node]];
-    }
-  return debt;
+    if (!dead[f.particle[p]]) surviving[f.patch_of[p]] += owed_kg[f.particle[p]];
+  std::vector<std::uint8_t> settled(f.patches.size(), 0);
+  for (std::size_t p = 0; p < f.particle.size(); ++p) {
+    const Index i = f.patch_of[p];
+    if (dying[i] == 0 || dead[f.particle[p]] || surviving[i] <= 0) continue;
+    const Real left = total[i] - static_cast<Real>(dying[i]) * liquid.particle_mass;
+    owed_kg[f.particle[p]] *= std::max(left, 0.0) / surviving[i];
+    settled[i] = left >= 0;
+  }
+  // A patch without debtors left: the difference (rounding, or debts that the dead owed beyond their mass) stays in
+  // the books as waiting mass, negative where a neighbour will have to pay.
+  for (std::size_t p = 0; p < f.particle.size(); ++p) {
+    const Index i = f.patch_of[p];
+    if (dying[i] == 0 || settled[i]) continue;
+    settled[i] = 1;
+    exchange.waiting_kg[f.links[f.first_link[p]].node] -= total[i] - static_cast<Real>(dying[i]) * liquid.particle_mass;
+  }
 }
 
 }  // namespace
 
-Transfer absorb_particles(const Liquid& liquid, const Footprint& f, ExchangeState& exchange,
-                          std::span<std::uint8_t> dead) {
+Transfer absorb_particles(Liquid& liquid, const Footprint& f, ExchangeState& exchange, std::span<std::uint8_t> dead) {
   Transfer transfer;
-  std::vector<Real> owed(f.patches.size(), 0);
-  for (std::size_t s = 0; s < f.supplies.size(); ++s)
-    owed[f.supply_patch[s]] += exchange.owed_kg[f.supplies[s].node];
+  std::vector<Real>& owed = liquid.particles.owed_kg;
+  std::vector<Real> total(f.patches.size(), 0);
+  for (std::size_t p = 0; p < f.particle.size(); ++p) total[f.patch_of[p]] += owed[f.particle[p]];
   std::vector<std::size_t> dying(f.patches.size(), 0);
   bool any = false;
   for (std::size_t i = 0; i < f.patches.size(); ++i) {
-    // A rounding of the division must not kill a particle that is short of 1e-12 of its mass: the debt stays >= 0.
-    dying[i] = std::min(static_cast<std::size_t>(owed[i] / liquid.particle_mass), f.patches[i].particles);
+    // The last particle of a patch owes its mass to rounding only: it must not linger for 1e-9 of it.
+    dying[i] = std::min(static_cast<std::size_t>(total[i] / liquid.particle_mass + 1e-9), f.patches[i].particles);
     any = any || dying[i] > 0;
   }
   if (!any) return transfer;
 
-  const std::vector<Real> debt = debts(f, exchange);
   std::vector<Index> order(f.particle.size());
   for (std::size_t p = 0; p < order.size(); ++p) order[p] = static_cast<Index>(p);
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return debt[a] > debt[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return owed[f.particle[a]] > owed[f.particle[b]]; });
   std::vector<std::size_t> left = dying;
   for (const Index p : order) {
     if (left[f.patch_of[p]] == 0) continue;
@@ -61,11 +77,9 @@ Transfer absorb_particles(const Liquid& liquid, const Footprint& f, ExchangeStat
     transfer.momentum += liquid.particle_mass * Vec3(v.x, v.y, v.z);
     ++transfer.particles;
   }
-  for (std::size_t s = 0; s < f.supplies.size(); ++s) {
-    const Index i = f.supply_patch[s];
-    if (dying[i] == 0) continue;
-    exchange.owed_kg[f.supplies[s].node] *= 1 - static_cast<Real>(dying[i]) * liquid.particle_mass / owed[i];
-  }
+  pass_on_debts(liquid, f, dying, total, dead, owed, exchange);
+  for (const Index i : f.particle)
+    if (dead[i]) owed[i] = 0;
   transfer.kg = liquid.particle_mass * static_cast<Real>(transfer.particles);
   exchange.absorbed_particles += transfer.particles;
   exchange.impulse += transfer.momentum;

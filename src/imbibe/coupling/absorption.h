@@ -1,5 +1,6 @@
 // Absorption through accumulators: the network takes mass in any amount; a particle dies only when its whole mass has
-// been taken, so no mass is ever rounded.
+// been taken, so no mass is ever rounded. What a particle owes moves with it (Particles::owed_kg).
+// Tested in tests/coupling/footprint_test.cpp.
 #pragma once
 
 #include <span>
@@ -15,13 +16,14 @@ struct Transfer {
   std::size_t particles = 0;
 };
 
-// Adds what the network took from each supply to the debts of its node. A negative amount (given back to the liquid
-// above) pays debts first; what it exceeds them by waits to become particles.
-void book_taken(const Footprint& footprint, std::span<const Real> taken_kg, ExchangeState& exchange);
+// Adds what the network took from each supply to the debts of the particles above it, by their shares. A negative
+// amount (given back to the liquid above) pays debts first; what exceeds them waits at its node to become particles.
+void book_taken(const Footprint& footprint, std::span<const Real> taken_kg, Particles& particles,
+                ExchangeState& exchange);
 
-// In each patch, while its debt holds whole particles, the touching particles with the largest debt die (dead[i] = 1),
-// and the patch's debts shrink in proportion. Particles of the smallest index first on a tie.
-Transfer absorb_particles(const Liquid& liquid, const Footprint& footprint, ExchangeState& exchange,
+// In each patch, while its debts hold whole particles, the touching particles that owe most die (dead[i] = 1; smallest
+// index first on a tie); what they owed short of or beyond their mass passes to the patch's other particles.
+Transfer absorb_particles(Liquid& liquid, const Footprint& footprint, ExchangeState& exchange,
                           std::span<std::uint8_t> dead);
 
 }  // namespace imbibe

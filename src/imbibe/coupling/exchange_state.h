@@ -1,5 +1,6 @@
 // What textile and free liquid owe each other between steps: mass that was moved in the books but not yet as whole
-// particles. A particle dies only when its whole mass was taken and is born only when a queue holds one.
+// particles. A particle dies only when its whole mass was taken (Particles::owed_kg) and is born only when a queue holds
+// one.
 #pragma once
 
 #include <vector>
@@ -9,7 +10,6 @@
 namespace imbibe {
 
 struct ExchangeState {
-  std::vector<Real> owed_kg;     // per node: taken from the liquid above, particles not yet removed
   std::vector<Real> waiting_kg;  // per node: released by the textile, not yet a particle
   Real normal_force = 0;         // N, of the liquid on the sheet, averaged over about 2 ms
   Vec3 impulse{};                // N s, momentum given to the (fixed) textile since the start

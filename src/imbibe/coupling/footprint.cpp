@@ -47,7 +47,7 @@ void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Re
 }
 
 // Joins particles through their common nodes and numbers the patches.
-void find_patches(const ExchangeState& exchange, Real particle_area, Real particle_mass, Footprint& f) {
+void find_patches(const Liquid& liquid, Real particle_area, Footprint& f) {
   std::vector<Index> parent(f.particle.size()), owner(f.supplies.size(), no_index);
   std::iota(parent.begin(), parent.end(), Index{0});
   for (Index p = 0; p < f.particle.size(); ++p)
@@ -68,13 +68,11 @@ void find_patches(const ExchangeState& exchange, Real particle_area, Real partic
     FootprintPatch& patch = f.patches[f.patch_of[p]];
     ++patch.particles;
     patch.area += particle_area;
-    patch.touching_kg += particle_mass;
+    patch.touching_kg += liquid.particle_mass;
+    patch.owed_kg += liquid.particles.owed_kg[f.particle[p]];
   }
   f.supply_patch.resize(f.supplies.size());
-  for (std::size_t s = 0; s < f.supplies.size(); ++s) {
-    f.supply_patch[s] = f.patch_of[owner[s]];
-    f.patches[f.supply_patch[s]].owed_kg += exchange.owed_kg[f.supplies[s].node];
-  }
+  for (std::size_t s = 0; s < f.supplies.size(); ++s) f.supply_patch[s] = f.patch_of[owner[s]];
 }
 
 void set_pressures(const Liquid& liquid, const FaceMap& map, const ExchangeState& exchange, Footprint& f) {
@@ -114,7 +112,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Plac
     f.particle.push_back(static_cast<Index>(i));
     f.on_back.push_back(p.z < 0);
   }
-  find_patches(exchange, dx * dx, liquid.particle_mass, f);
+  find_patches(liquid, dx * dx, f);
   set_pressures(liquid, map, exchange, f);
   for (std::size_t p = 0; p < f.particle.size(); ++p) {
     const FootprintPatch& patch = f.patches[f.patch_of[p]];

@@ -36,8 +36,8 @@ SeriesRow series_row(const World& world, const StepReport& last_step, const Meas
     row.released_particles += exchange.released_particles;
     row.bounces += exchange.bounces;
     for (const Real kg : exchange.waiting_kg) row.waiting_kg += kg;
-    for (const Real kg : exchange.owed_kg) row.owed_kg += kg;
   }
+  for (const Real kg : world.liquid.particles.owed_kg) row.owed_kg += kg;
   if (yarn_volume > 0) row.mean_saturation = weighted_saturation / yarn_volume;
   return row;
 }

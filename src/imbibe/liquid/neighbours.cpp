@@ -74,6 +74,7 @@ void permute(std::vector<T>& values, std::vector<T>& swap, const std::vector<Ind
 std::vector<Float4>& swap_for(Neighbours& n, const std::vector<Float4>&) { return n.record_swap; }
 std::vector<float>& swap_for(Neighbours& n, const std::vector<float>&) { return n.scalar_swap; }
 std::vector<Index>& swap_for(Neighbours& n, const std::vector<Index>&) { return n.id_swap; }
+std::vector<Real>& swap_for(Neighbours& n, const std::vector<Real>&) { return n.real_swap; }
 std::vector<ParticleClass>& swap_for(Neighbours& n, const std::vector<ParticleClass>&) { return n.kind_swap; }
 
 void find_keys(Neighbours& n, std::span<const Float4> position) {

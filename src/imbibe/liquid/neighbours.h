@@ -66,6 +66,7 @@ struct Neighbours {
   std::vector<std::uint32_t> histogram;
   std::vector<Float4> record_swap;
   std::vector<float> scalar_swap;
+  std::vector<Real> real_swap;
   std::vector<Index> id_swap;
   std::vector<ParticleClass> kind_swap;
 

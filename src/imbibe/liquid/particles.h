@@ -36,6 +36,7 @@ struct Particles {
   std::vector<float> pressure;         // Pa, for output and exchange, time-averaged over a few steps
   std::vector<float> warm_pressure;    // solver warm starts
   std::vector<float> warm_divergence;
+  std::vector<Real> owed_kg;           // kg, of the particle's mass that a textile has taken already
 
   std::size_t size() const { return position.size(); }
 };
@@ -44,7 +45,7 @@ struct Particles {
 template <class AnyParticles, class Visit>
 void visit_arrays(AnyParticles& p, Visit&& visit) {
   visit(p.position), visit(p.velocity), visit(p.id), visit(p.kind), visit(p.density), visit(p.pressure),
-      visit(p.warm_pressure), visit(p.warm_divergence);
+      visit(p.warm_pressure), visit(p.warm_divergence), visit(p.owed_kg);
 }
 
 struct Liquid {

@@ -110,7 +110,6 @@ void add_wetting(const Scene& scene, std::size_t i, World& world, std::vector<Pr
     const Real spacing = world.liquid.particle_mass > 0 ? world.liquid.spacing() : 0;
     textile.faces = std::make_shared<const FaceMap>(build_face_map(network, spacing));
     textile.yarn_boxes = std::make_shared<const YarnContactIndex>(build_contact_index(network));
-    textile.exchange.owed_kg.assign(network.nodes(), 0);
     textile.exchange.waiting_kg.assign(network.nodes(), 0);
   } catch (const InputError& error) {
     add_at(scene, error, problems, fmt::format("textiles[{}].wetting", i));

@@ -282,7 +282,7 @@ std::vector<std::string> mismatches(const World& read, const World& built) {
   same("particle mass in kg", read.liquid.particle_mass, built.liquid.particle_mass);
   const Particles& p = read.liquid.particles;
   for (const std::size_t size : {p.velocity.size(), p.id.size(), p.kind.size(), p.density.size(), p.pressure.size(),
-                                 p.warm_pressure.size(), p.warm_divergence.size()}) {
+                                 p.warm_pressure.size(), p.warm_divergence.size(), p.owed_kg.size()}) {
     if (size != p.size()) problems.push_back("particle arrays differ in length");
   }
   for (std::size_t i = 0; i < read.textiles.size(); ++i) {
@@ -293,9 +293,7 @@ std::vector<std::string> mismatches(const World& read, const World& built) {
     same(name + "nodes", t.contents.liquid_kg.size(), nodes);
     same(name + "fibre shells", t.contents.shell_regain.size(), b.contents.shell_regain.size());
     same(name + "hysteresis values", t.contents.reached_saturation.size(), b.contents.reached_saturation.size());
-    for (const std::size_t size : {t.exchange.owed_kg.size(), t.exchange.waiting_kg.size()}) {
-      if (size != 0) same(name + "exchange values", size, nodes);
-    }
+    if (!t.exchange.waiting_kg.empty()) same(name + "exchange values", t.exchange.waiting_kg.size(), nodes);
   }
   return problems;
 }

@@ -42,6 +42,8 @@ void visit_state(Visitor& v, AnyWorld& world) {
   v.value("since_wetting", world.pace.since_wetting);
   v.value("resting", world.pace.resting);
   v.value("calm_since", world.pace.calm_since);
+  v.value("calm_centre", world.pace.calm_centre);
+  v.value("calm_extent", world.pace.calm_extent);
   v.value("particles_at_rest", world.pace.particles_at_rest);
 
   v.group("liquid");
@@ -56,6 +58,7 @@ void visit_state(Visitor& v, AnyWorld& world) {
   v.array("pressure", particles.pressure);
   v.array("warm_pressure", particles.warm_pressure);
   v.array("warm_divergence", particles.warm_divergence);
+  v.array("owed_kg", particles.owed_kg);
 
   for (std::size_t i = 0; i < world.sources.size(); ++i) {
     v.group("sources/" + std::to_string(i));
@@ -71,7 +74,6 @@ void visit_state(Visitor& v, AnyWorld& world) {
     v.array("liquid_kg", textile.contents.liquid_kg);
     v.array("shell_regain", textile.contents.shell_regain);
     v.array("reached_saturation", textile.contents.reached_saturation);
-    v.array("owed_kg", textile.exchange.owed_kg);
     v.array("waiting_kg", textile.exchange.waiting_kg);
     v.value("normal_force", textile.exchange.normal_force);
     v.value("impulse", textile.exchange.impulse);

@@ -141,7 +141,7 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   world.ledger.evaporated_kg += wetting.evaporated_kg;
   next_interval = std::min(next_interval, wetting.suggested_step);
 
-  book_taken(footprint, scratch.taken_kg, textile.exchange);
+  book_taken(footprint, scratch.taken_kg, world.liquid.particles, textile.exchange);
   scratch.dead.assign(world.liquid.particles.size(), 0);
   report.absorbed += absorb_particles(world.liquid, footprint, textile.exchange, scratch.dead).particles;
   remove_particles(world.liquid.particles, scratch.dead);
@@ -172,38 +172,53 @@ void leave(World& world, StepScratch& scratch, StepReport& report) {
   bool any = false;
   for (std::size_t i = 0; i < n; ++i) {
     const Float4& x = world.liquid.particles.position[i];
-    if (!world.domain.contains({x.x, x.y, x.z})) scratch.dead[i] = 1, any = true;
+    if (world.domain.contains({x.x, x.y, x.z})) continue;
+    scratch.dead[i] = 1, any = true;
+    world.ledger.left_kg += world.liquid.particle_mass - world.liquid.particles.owed_kg[i];
   }
   if (!any) return;
   report.left = remove_particles(world.liquid.particles, scratch.dead);
-  world.ledger.left_kg += world.liquid.particle_mass * static_cast<Real>(report.left);
 }
 
-// Slow enough to count as resting: rms speed below 3 % of the capillary velocity sqrt(gamma / (rho R)) of a drop of
-// all the liquid, for a quarter of its capillary time sqrt(rho R^3 / gamma). Liquid in the air is never at rest:
-// gravity alone exceeds that speed within a millisecond.
+// Sums over the particles that make centre and extents.
+struct Moments {
+  Vec3 first{}, second{};
+  Moments& operator+=(const Moments& o) { return first += o.first, second += o.second, *this; }
+};
+
+// The liquid rests when its shape does: centre and extents have stayed within 1 % of the radius of a drop of all the
+// liquid for half its capillary time sqrt(rho R^3 / gamma). Particle speeds are no measure: a resting drop keeps a
+// residual motion of 2-10 % of the capillary velocity inside. Falling, spreading, oscillating or running liquid leaves
+// the band; so does a drop from which the textile drinks fast.
 void judge_rest(World& world, const StepOptions& options) {
   Pace& pace = world.pace;
   const Particles& p = world.liquid.particles;
   if (!options.rest_allowed || p.size() == 0) return;
-  const Real square = parallel_sum(p.size(), [&](std::size_t begin, std::size_t end) {
-    Real s = 0;
+  const Moments sum = parallel_sum(p.size(), [&](std::size_t begin, std::size_t end) {
+    Moments m;
     for (std::size_t i = begin; i < end; ++i) {
-      const Float4& v = p.velocity[i];
-      s += Real(v.x) * v.x + Real(v.y) * v.y + Real(v.z) * v.z;
+      const Vec3 x(p.position[i].x, p.position[i].y, p.position[i].z);
+      m.first += x;
+      m.second += Vec3{x.x * x.x, x.y * x.y, x.z * x.z};
     }
-    return s;
+    return m;
   });
+  const auto n = static_cast<Real>(p.size());
+  const Vec3 centre = sum.first / n, square = sum.second / n;
+  const auto spread = [](Real mean_square, Real mean) { return std::sqrt(std::max(mean_square - mean * mean, 0.0)); };
+  const Vec3 extent{spread(square.x, centre.x), spread(square.y, centre.y), spread(square.z, centre.z)};
+
   const LiquidKind& kind = world.liquid.kind;
   const Real radius = std::cbrt(3 * world.liquid.mass() / (4 * pi * kind.density));
-  const Real slow = 0.03 * std::sqrt(kind.surface_tension / (kind.density * radius));
-  if (square > slow * slow * static_cast<Real>(p.size())) {
-    pace.calm_since = -1;
+  const Real band = 0.01 * radius;
+  if (pace.calm_since < 0 || norm(centre - pace.calm_centre) > band || norm(extent - pace.calm_extent) > band) {
+    pace.calm_since = world.time;
+    pace.calm_centre = centre;
+    pace.calm_extent = extent;
     return;
   }
-  if (pace.calm_since < 0) pace.calm_since = world.time;
-  if (world.time - pace.calm_since < 0.25 * std::sqrt(kind.density * radius * radius * radius / kind.surface_tension))
-    return;
+  const Real window = 0.5 * std::sqrt(kind.density * radius * radius * radius / kind.surface_tension);
+  if (world.time - pace.calm_since < window) return;
   pace.resting = true;
   pace.particles_at_rest = p.size();
 }

@@ -17,14 +17,15 @@ static Real sum(const std::vector<Real>& values, std::size_t begin, std::size_t 
 
 MassBalance mass_balance(const World& world) {
   MassBalance b;
-  b.free = world.liquid.mass();
+  // Particles that are still there but no longer own all their mass, and mass that is not a particle yet.
+  const std::vector<Real>& owed = world.liquid.particles.owed_kg;
+  b.free = world.liquid.mass() - sum(owed, 0, owed.size());
   for (const Textile& textile : world.textiles) {
     const std::size_t segments = textile.fabric->network.segments(), nodes = textile.fabric->network.nodes();
     b.sorbed += sum(textile.contents.sorbed_kg, 0, textile.contents.sorbed_kg.size());
     b.yarn += sum(textile.contents.liquid_kg, 0, segments);
     b.pore += sum(textile.contents.liquid_kg, segments, nodes);
-    // Particles that are still there but no longer own their mass, and mass that is not a particle yet.
-    b.free += sum(textile.exchange.waiting_kg, 0, nodes) - sum(textile.exchange.owed_kg, 0, nodes);
+    b.free += sum(textile.exchange.waiting_kg, 0, textile.exchange.waiting_kg.size());
   }
   b.evaporated = world.ledger.evaporated_kg;
   b.left = world.ledger.left_kg;

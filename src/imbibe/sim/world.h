@@ -44,7 +44,10 @@ struct Pace {
   Real wetting_interval = 1e-4;  // s, the next textile step: grows and shrinks with the network's own suggestion
   Real since_wetting = 0;        // s of liquid motion since the last textile step
   bool resting = false;          // true: the free liquid is at rest and makes no SPH steps
-  Real calm_since = -1;          // s, world time since which the liquid is slow enough to rest; < 0: it is not
+  // The shape that the liquid has kept since `calm_since` (world time, s; < 0: none yet).
+  Real calm_since = -1;
+  Vec3 calm_centre{};            // m
+  Vec3 calm_extent{};            // m, root mean square distance from the centre along x, y, z
   std::uint64_t particles_at_rest = 0;  // particles there were when it came to rest
 };
 
