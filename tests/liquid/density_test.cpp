@@ -33,13 +33,9 @@ struct Block {
             const std::uint64_t id = p.position.size();
             const auto shake = [&](std::uint64_t s) { return jitter * spacing * (2 * uniform({7, id, 0}, s) - 1); };
             const Vec3 x = Vec3{i + half, j + half, k + half} * edge + Vec3{shake(0), shake(1), shake(2)};
-            p.position.push_back({static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), 0});
-            const auto speed = [&](std::uint64_t s) { return static_cast<float>(uniform({8, id, 0}, s) - 0.5); };
-            p.velocity.push_back({speed(0), speed(1), speed(2), 0});
+            const auto speed = [&](std::uint64_t s) { return uniform({8, id, 0}, s) - 0.5; };
+            add_particle(liquid, x, {speed(0), speed(1), speed(2)});
           }
-    const std::size_t n = p.position.size();
-    p.id.resize(n), p.kind.resize(n), p.density.resize(n), p.pressure.resize(n);
-    p.warm_pressure.resize(n), p.warm_divergence.resize(n);
     if (on_floor) walls.push_back({&floor, {}, {}, false});
     sort_particles(f.neighbours, p, kernel_for(liquid.spacing()));
     begin_fields(f, liquid);

@@ -95,17 +95,9 @@ Scene scene_of(const std::vector<Vec3>& points, int resolution) {
   std::uint64_t id = 0;
   for (const Vec3& x : points) {
     const auto jitter = [&](std::uint64_t stream) { return 0.02 * spacing * (2 * uniform({1, id, 0}, stream) - 1); };
-    const Vec3 at = x * scale + Vec3{jitter(0), jitter(1), jitter(2)};
+    add_particle(s.liquid, x * scale + Vec3{jitter(0), jitter(1), jitter(2)}, {});
     ++id;
-    Particles& p = s.liquid.particles;
-    p.position.push_back({static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z), 0});
   }
-  Particles& p = s.liquid.particles;
-  const std::size_t n = p.position.size();
-  p.velocity.resize(n), p.id.resize(n), p.kind.resize(n), p.density.resize(n), p.pressure.resize(n);
-  p.warm_pressure.resize(n), p.warm_divergence.resize(n);
-  for (std::size_t i = 0; i < n; ++i) p.id[i] = static_cast<Index>(i);
-  s.liquid.next_id = static_cast<Index>(n);
   s.unit = std::sqrt(s.liquid.kind.density * std::pow(drop_radius, 3) / s.liquid.kind.surface_tension);
   return s;
 }

@@ -34,6 +34,17 @@ std::array<float, completion_entries + 1> completion_table() {
   return table;
 }
 
+// How far the gap under a particle is filled: |n + G| along the wall's normal is 0 where liquid reaches down to it and
+// that of a free surface where air lies between. Limits: 0.9/H is a gap of about one layer, 0.5/H none (the noise of a
+// resting layer is 0.2/H).
+Floats wall_contact(const Floats3& gradient, const Floats4& wall, float support) {
+  constexpr float open = 0.9f, closed = 0.5f;
+  const Floats length = simd::sqrt(wall.x * wall.x + wall.y * wall.y + wall.z * wall.z);
+  const Floats along = (gradient.x + wall.x) * wall.x + (gradient.y + wall.y) * wall.y + (gradient.z + wall.z) * wall.z;
+  const Floats bare = -support * along / simd::max(length, 1e-20f);
+  return simd::min(simd::max((open - bare) / (open - closed), 0.0f), simd::broadcast(1.0f));
+}
+
 }  // namespace
 
 float air_completion(float gradient_h) {
@@ -78,7 +89,11 @@ void compute_density(LiquidFields& f) {
         gradient.x += slope * x.x, gradient.y += slope * x.y, gradient.z += slope * x.z;
         square += slope * slope * d2;
       }
-      const Floats4 wall = simd::load4(&f.boundary.wall[i]);
+      Floats4 wall = simd::load4(&f.boundary.wall[i]);
+      const Floats contact = wall_contact(gradient, wall, kernel.support);
+      wall = {wall.x * contact, wall.y * contact, wall.z * contact, wall.w * contact};
+      simd::store4(&f.boundary.wall[i], wall.xyz(), wall.w);
+      simd::store(&f.wall_contact[i], contact);
       const Floats colour = own + volume * kernel.value_scale * sum;
       const Floats share = simd::min(colour / simd::max(1 - wall.w, 0.25f), 1.0f);
       const Floats3 air{gradient.x + share * wall.x, gradient.y + share * wall.y, gradient.z + share * wall.z};
