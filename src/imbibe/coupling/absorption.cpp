@@ -4,7 +4,13 @@
 
 namespace imbibe {
 
-void book_taken(const Footprint& f, std::span<const Real> taken_kg, Particles& particles, ExchangeState& exchange) {
+void book_taken(const Footprint& f, std::span<Real> taken_kg, Particles& particles, ExchangeState& exchange) {
+  for (std::size_t s = 0; s < f.supplies.size(); ++s) {  // what waits on the face goes first
+    Real& waiting = exchange.waiting_kg[f.supplies[s].node];
+    const Real from_film = f.supply_patch[s] == no_index ? taken_kg[s] : std::clamp(taken_kg[s], 0.0, std::max(waiting, 0.0));
+    waiting -= from_film;
+    taken_kg[s] -= from_film;
+  }
   std::vector<Real> cover(f.supplies.size(), 0);
   for (const FootprintLink& link : f.links) cover[f.supply_of_node[link.node]] += link.share;
   for (std::size_t p = 0; p < f.particle.size(); ++p) {
@@ -57,16 +63,21 @@ Transfer absorb_particles(Liquid& liquid, const Footprint& f, ExchangeState& exc
   std::vector<std::size_t> dying(f.patches.size(), 0);
   bool any = false;
   for (std::size_t i = 0; i < f.patches.size(); ++i) {
-    // The last particle of a patch owes its mass to rounding only: it must not linger for 1e-9 of it.
-    dying[i] = std::min(static_cast<std::size_t>(total[i] / liquid.particle_mass + 1e-9), f.patches[i].particles);
+    // A particle short of a thousandth of its mass dies too: that remainder waits on the face and is taken from there.
+    dying[i] = std::min(static_cast<std::size_t>(total[i] / liquid.particle_mass + 1e-3), f.patches[i].particles);
     any = any || dying[i] > 0;
   }
   if (!any) return transfer;
 
   std::vector<Index> order(f.particle.size());
   for (std::size_t p = 0; p < order.size(); ++p) order[p] = static_cast<Index>(p);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return owed[f.particle[a]] > owed[f.particle[b]]; });
+  // The liquid is drawn from the drop as a whole, and its contact line is held by hysteresis: a particle that died at
+  // the rim would tear the line back by a spacing. So those with liquid all around die first.
+  const auto at_rim = [&](Index p) { return liquid.particles.kind[f.particle[p]] == ParticleClass::liquid_vapour; };
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    if (at_rim(a) != at_rim(b)) return at_rim(b);
+    return owed[f.particle[a]] > owed[f.particle[b]];
+  });
   std::vector<std::size_t> left = dying;
   for (const Index p : order) {
     if (left[f.patch_of[p]] == 0) continue;

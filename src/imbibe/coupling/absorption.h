@@ -16,13 +16,15 @@ struct Transfer {
   std::size_t particles = 0;
 };
 
-// Adds what the network took from each supply to the debts of the particles above it, by their shares. A negative
+// Books what the network took from each supply: first from the mass that waits on the face there, the rest as debts of
+// the particles above it, by their shares (taken_kg is left with that rest). A negative
 // amount (given back to the liquid above) pays debts first; what exceeds them waits at its node to become particles.
-void book_taken(const Footprint& footprint, std::span<const Real> taken_kg, Particles& particles,
+void book_taken(const Footprint& footprint, std::span<Real> taken_kg, Particles& particles,
                 ExchangeState& exchange);
 
-// In each patch, while its debts hold whole particles, the touching particles that owe most die (dead[i] = 1; smallest
-// index first on a tie); what they owed short of or beyond their mass passes to the patch's other particles.
+// In each patch, while its debts hold whole particles, touching particles die (dead[i] = 1): those away from the rim
+// first, of these the ones that owe most, the smallest index on a tie. What they owed short of or beyond their mass
+// passes to the patch's other particles.
 Transfer absorb_particles(Liquid& liquid, const Footprint& footprint, ExchangeState& exchange,
                           std::span<std::uint8_t> dead);
 

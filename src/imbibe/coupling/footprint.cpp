@@ -92,6 +92,22 @@ void set_pressures(const Liquid& liquid, const FaceMap& map, const ExchangeState
   }
 }
 
+void add_waiting_film(const Liquid& liquid, const FaceMap& map, const ExchangeState& exchange, Footprint& f) {
+  for (Index k = 0; k < exchange.waiting_kg.size(); ++k) {
+    const Real kg = exchange.waiting_kg[k];
+    if (kg <= 0) continue;
+    if (f.supply_of_node[k] == no_index) {
+      f.supply_of_node[k] = static_cast<Index>(f.supplies.size());
+      f.supplies.push_back({.node = k});
+      f.supply_patch.push_back(no_index);
+    }
+    FaceSupply& supply = f.supplies[f.supply_of_node[k]];
+    supply.available_kg += kg;
+    supply.wetted_share =
+        std::min(1.0, supply.wetted_share + kg / (liquid.kind.density * liquid.spacing() * map.face_area[k]));
+  }
+}
+
 }  // namespace
 
 void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
@@ -124,6 +140,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Plac
     f.supplies[s].wetted_share = std::min(f.supplies[s].wetted_share, 1.0);
     f.supplies[s].pressure = f.patches[f.supply_patch[s]].pressure;
   }
+  add_waiting_film(liquid, map, exchange, f);
 }
 
 }  // namespace imbibe

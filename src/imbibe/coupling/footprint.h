@@ -38,6 +38,8 @@ struct FootprintPatch {
   Real pressure = 0;   // Pa
 };
 
+// Besides the particles, mass that waits at a node to become a particle (ExchangeState::waiting_kg) lies on the face as a
+// film of one spacing and may be taken back: such a node has a supply too, without a patch when no particle covers it.
 struct Footprint {
   std::vector<Index> particle;        // touching particles, ascending
   std::vector<Index> patch_of;        // patch of each touching particle
@@ -45,7 +47,7 @@ struct Footprint {
   std::vector<Index> first_link;      // size particles + 1
   std::vector<FootprintLink> links;
   std::vector<FaceSupply> supplies;   // one per covered node, in order of first contact
-  std::vector<Index> supply_patch;
+  std::vector<Index> supply_patch;    // no_index: only waiting mass
   std::vector<FootprintPatch> patches;
   std::vector<Index> supply_of_node;  // scratch: no_index but for covered nodes
   bool empty() const { return particle.empty(); }

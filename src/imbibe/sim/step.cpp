@@ -14,9 +14,9 @@
 namespace imbibe {
 namespace {
 
-// The network follows moving liquid at least this often: pores fill in some 0.3 ms at first, later uptake is slow
-// against it (about 6 uL/s for cotton), so 2 ms moves less than a particle.
-constexpr Real longest_interval_with_moving_liquid = 2e-3;   // s
+// The network follows moving liquid this often: uptake is slow against it (about 6 uL/s for cotton), so 2 ms moves less
+// than a particle. It cuts its own steps where it must (pores fill in some 0.3 ms at first).
+constexpr Real interval_with_moving_liquid = 2e-3;           // s
 constexpr Real longest_interval_with_resting_liquid = 5e-2;  // s
 constexpr Real share_taken_before_moving = 0.02;             // of the particles that came to rest
 constexpr Real force_averaging_time = 2e-3;                  // s, about ten SPH steps and more
@@ -159,7 +159,7 @@ void exchange_all(World& world, Real dt, StepScratch& scratch, StepReport& repor
   Real next = std::numeric_limits<Real>::infinity();
   for (std::size_t t = 0; t < world.textiles.size(); ++t) exchange(world, t, dt, scratch, report, next);
   world.pace.since_wetting = 0;
-  world.pace.wetting_interval = next;
+  if (!report.liquid_moved) world.pace.wetting_interval = next;
   report.wetting_ran = true;
   report.wetting_wall_s += seconds_since(start);
 }
@@ -233,10 +233,10 @@ void wake_when_changed(World& world) {
 
 // The step of the textiles that the liquid above allows.
 Real textile_interval(const World& world, bool moving) {
-  const Real longest = moving ? longest_interval_with_moving_liquid
-                     : world.liquid.particles.size() > 0 ? longest_interval_with_resting_liquid
+  if (moving) return interval_with_moving_liquid;
+  const Real longest = world.liquid.particles.size() > 0 ? longest_interval_with_resting_liquid
                                                          : std::numeric_limits<Real>::infinity();
-  return std::min(world.pace.wetting_interval, longest);
+  return std::clamp(world.pace.wetting_interval, interval_with_moving_liquid, longest);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Textile {
 
 // How the two clocks go together: SPH steps (1e-5 - 1e-3 s) run inside textile steps, and stop while the liquid rests.
 struct Pace {
-  Real wetting_interval = 1e-4;  // s, the next textile step: grows and shrinks with the network's own suggestion
+  Real wetting_interval = 2e-3;  // s, the textile step that the network suggests; followed where no liquid moves
   Real since_wetting = 0;        // s of liquid motion since the last textile step
   bool resting = false;          // true: the free liquid is at rest and makes no SPH steps
   // The shape that the liquid has kept since `calm_since` (world time, s; < 0: none yet).

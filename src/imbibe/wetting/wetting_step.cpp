@@ -14,7 +14,7 @@ constexpr Real first_step = 1e-4;     // s
 constexpr Real longest_step = 300;    // s
 constexpr int easy_newton = 5;        // iterations of a step that may grow
 constexpr Real growth = 1.3;
-constexpr Real alone_growth = 2;      // nothing supplies the cloth and hardly anything moves
+constexpr Real quiet_growth = 2;      // hardly anything moves
 constexpr Real quiet_change = 0.05;   // of saturation
 constexpr Real shrink = 0.3;
 constexpr int most_rejections = 30;   // one after the other: 0.3^30 of the step
@@ -49,11 +49,10 @@ void release_surplus(const WettingModel& m, Contents& contents, std::vector<Rele
   }
 }
 
-Real next_step(Real dt, const Substep& substep, bool supplied) {
+Real next_step(Real dt, const Substep& substep) {
   const bool easy = substep.transport.newton_iterations <= easy_newton;
   if (!easy) return substep.transport.newton_iterations > 2 * easy_newton ? 0.7 * dt : dt;
-  const bool quiet = !supplied && substep.transport.largest_change < quiet_change;
-  return dt * (quiet ? alone_growth : growth);
+  return dt * (substep.transport.largest_change < quiet_change ? quiet_growth : growth);
 }
 
 }  // namespace
@@ -102,7 +101,7 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
       taken_kg[i] += work.supply_kg[i];
       report.taken_kg += work.supply_kg[i];
     }
-    step = next_step(now, substep, !supplies.empty());
+    step = next_step(now, substep);
     // A sliver at the end of dt says nothing about the step that would be right.
     if (!last || report.substeps == 1) report.suggested_step = step;
     report.advanced_s = last ? dt : report.advanced_s + now;
