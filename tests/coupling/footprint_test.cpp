@@ -129,16 +129,40 @@ TEST(Absorption, DebtsMoveWithTheirParticle) {
   EXPECT_NEAR(available, 0.4 * s.liquid.particle_mass, 1e-12 * s.liquid.particle_mass);
 }
 
-TEST(Absorption, LiquidGivenBackPaysDebtsFirstAndThenWaits) {
+TEST(Absorption, LiquidGivenBackPaysDebtsThenIsCreditAndWaitsOnceItMakesAParticle) {
   Scene s;
   s.add_layer(1, 0, 0);
-  s.liquid.particles.owed_kg[0] = 2e-9;
+  const Real mass = s.liquid.particle_mass;
+  s.liquid.particles.owed_kg[0] = 0.2 * mass;
   s.find();
+  std::vector<std::uint8_t> dead(1, 0);
   std::vector<Real> taken(s.footprint.supplies.size(), 0);
-  taken[0] = -5e-9;
+  taken[0] = -0.5 * mass;
   book_taken(s.footprint, taken, s.liquid.particles, s.exchange);
+  absorb_particles(s.liquid, s.footprint, s.exchange, dead);
+  EXPECT_NEAR(s.owed(), -0.3 * mass, 1e-12 * mass);
+  taken[0] = -0.8 * mass;
+  book_taken(s.footprint, taken, s.liquid.particles, s.exchange);
+  absorb_particles(s.liquid, s.footprint, s.exchange, dead);
   EXPECT_EQ(s.owed(), 0);
-  EXPECT_NEAR(std::accumulate(s.exchange.waiting_kg.begin(), s.exchange.waiting_kg.end(), 0.0), 3e-9, 1e-23);
+  EXPECT_NEAR(std::accumulate(s.exchange.waiting_kg.begin(), s.exchange.waiting_kg.end(), 0.0), 1.1 * mass, 1e-12 * mass);
+}
+
+TEST(Absorption, MassThatWaitsOnTheFaceIsTakenBackFirst) {
+  Scene s;
+  s.add_layer(1, 0, 0);
+  s.find();
+  const Index node = s.footprint.supplies[0].node;
+  const Real mass = s.liquid.particle_mass, before = s.footprint.supplies[0].available_kg;
+  s.exchange.waiting_kg[node] = 0.1 * mass;
+  s.find();
+  ASSERT_EQ(s.footprint.supplies[0].node, node);
+  EXPECT_NEAR(s.footprint.supplies[0].available_kg, before + 0.1 * mass, 1e-12 * mass);
+  std::vector<Real> taken(s.footprint.supplies.size(), 0);
+  taken[0] = 0.15 * mass;
+  book_taken(s.footprint, taken, s.liquid.particles, s.exchange);
+  EXPECT_NEAR(s.exchange.waiting_kg[node], 0, 1e-12 * mass);
+  EXPECT_NEAR(s.owed(), 0.05 * mass, 1e-12 * mass);
 }
 
 TEST(Release, WaitingMassBecomesParticlesBelowTheSheetAndNothingIsRounded) {

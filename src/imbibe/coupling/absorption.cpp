@@ -19,14 +19,22 @@ void book_taken(const Footprint& f, std::span<Real> taken_kg, Particles& particl
       const Index s = f.supply_of_node[f.links[l].node];
       owed += taken_kg[s] * (f.links[l].share / cover[s]);
     }
-    if (owed < 0) {
-      exchange.waiting_kg[f.links[f.first_link[p]].node] -= owed;
-      owed = 0;
-    }
   }
 }
 
 namespace {
+
+// Liquid given back to a patch is credit of its particles (they owe less than nothing) until it makes a whole particle.
+void turn_credit_into_waiting_mass(const Liquid& liquid, const Footprint& f, std::span<const Real> total,
+                                   std::vector<Real>& owed_kg, ExchangeState& exchange) {
+  for (std::size_t p = 0; p < f.particle.size(); ++p) {
+    const Index i = f.patch_of[p];
+    if (total[i] > -liquid.particle_mass) continue;
+    const Real due = std::min(owed_kg[f.particle[p]], 0.0);
+    owed_kg[f.particle[p]] -= due;
+    exchange.waiting_kg[f.links[f.first_link[p]].node] -= due;
+  }
+}
 
 // Passes what is left of the patches' debts to their survivors: each owes in proportion to what it owed.
 void pass_on_debts(const Liquid& liquid, const Footprint& f, std::span<const std::size_t> dying,
@@ -64,9 +72,11 @@ Transfer absorb_particles(Liquid& liquid, const Footprint& f, ExchangeState& exc
   bool any = false;
   for (std::size_t i = 0; i < f.patches.size(); ++i) {
     // A particle short of a thousandth of its mass dies too: that remainder waits on the face and is taken from there.
-    dying[i] = std::min(static_cast<std::size_t>(total[i] / liquid.particle_mass + 1e-3), f.patches[i].particles);
+    const Real whole = std::max(total[i] / liquid.particle_mass + 1e-3, 0.0);
+    dying[i] = std::min(static_cast<std::size_t>(whole), f.patches[i].particles);
     any = any || dying[i] > 0;
   }
+  turn_credit_into_waiting_mass(liquid, f, total, owed, exchange);
   if (!any) return transfer;
 
   std::vector<Index> order(f.particle.size());

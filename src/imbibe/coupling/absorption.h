@@ -17,14 +17,14 @@ struct Transfer {
 };
 
 // Books what the network took from each supply: first from the mass that waits on the face there, the rest as debts of
-// the particles above it, by their shares (taken_kg is left with that rest). A negative
-// amount (given back to the liquid above) pays debts first; what exceeds them waits at its node to become particles.
+// the particles above it, by their shares (taken_kg is left with that rest). A negative amount is given back to the
+// liquid above: it pays debts and becomes credit (negative debt).
 void book_taken(const Footprint& footprint, std::span<Real> taken_kg, Particles& particles,
                 ExchangeState& exchange);
 
 // In each patch, while its debts hold whole particles, touching particles die (dead[i] = 1): those away from the rim
 // first, of these the ones that owe most, the smallest index on a tie. What they owed short of or beyond their mass
-// passes to the patch's other particles.
+// passes to the patch's other particles. Credit that makes a whole particle waits on the face to become one.
 Transfer absorb_particles(Liquid& liquid, const Footprint& footprint, ExchangeState& exchange,
                           std::span<std::uint8_t> dead);
 

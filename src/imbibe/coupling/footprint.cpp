@@ -132,7 +132,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Plac
   set_pressures(liquid, map, exchange, f);
   for (std::size_t p = 0; p < f.particle.size(); ++p) {
     const FootprintPatch& patch = f.patches[f.patch_of[p]];
-    const Real left = liquid.particle_mass * std::clamp(1 - patch.owed_kg / patch.touching_kg, 0.0, 1.0);
+    const Real left = liquid.particle_mass * std::max(1 - patch.owed_kg / patch.touching_kg, 0.0);
     for (Index l = f.first_link[p]; l < f.first_link[p + 1]; ++l)
       f.supplies[f.supply_of_node[f.links[l].node]].available_kg += f.links[l].share * left;
   }
