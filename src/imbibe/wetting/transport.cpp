@@ -14,6 +14,8 @@ namespace {
 constexpr Real wet_saturation = 1e-7;     // a node above it belongs to the solved set with its neighbours
 constexpr Real residual_tolerance = 1e-9; // of saturation
 constexpr int most_newton = 25;
+constexpr int undamped_newton = 12;      // iterations in Y before the damped ones in s
+constexpr Real straight_change = 1e-3;    // of a saturation, relative: up to here Y is a straight line
 constexpr int most_linear = 400;
 constexpr Real driest_wall = 1e-4;        // saturation whose corners wet the walls of a dry pore enough to begin
 constexpr std::size_t loop_tile = 1024;
@@ -89,6 +91,22 @@ Real effective_entry(const WettingModel& m, const Work& w, Index local) {
 
 void evaluate_nodes(const WettingModel& m, Work& w);
 
+// What the links of a node make of its potential (own_side).
+void gather_own_sides(const TransportInput& input, Work& w) {
+  const WettingModel& m = *input.model;
+  parallel_for(w.active.size(), [&](std::size_t i) {
+    Real conductance = 0, entry = 0;
+    for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
+      const auto& local = w.edges[w.row_edge[k]];
+      if (m.edges[local.edge].kind == EdgeKind::pore_pore) continue;
+      conductance += local.factor, entry += local.factor * local.entry;
+    }
+    const bool segment = w.active[i] < m.segments && !m.params.hysteresis;
+    w.own_share[i] = input.dt / w.volume[i] * conductance;
+    w.own_entry[i] = segment || conductance <= 0 ? m.entry[w.active[i]] : entry / conductance;
+  }, loop_tile);
+}
+
 // Sorts the set, gathers its state and its edges. `guess`: saturations to start from, by node (empty: the old ones).
 void gather(const TransportInput& input, const Contents& contents, Work& w) {
   const WettingModel& m = *input.model;
@@ -102,7 +120,7 @@ void gather(const TransportInput& input, const Contents& contents, Work& w) {
   for (Index i = 0; i < n; ++i) w.local_of[w.active[i]] = i;
   for (auto* vector : {&w.volume, &w.old_content, &w.old_saturation, &w.saturation, &w.pressure, &w.pressure_slope,
                        &w.potential, &w.potential_slope, &w.release, &w.release_slope, &w.residual, &w.change,
-                       &w.reached, &w.scale}) {
+                       &w.reached, &w.scale, &w.own_share, &w.own_entry}) {
     vector->assign(n, 0);
   }
   parallel_for(n, [&](std::size_t i) {
@@ -149,6 +167,7 @@ void gather(const TransportInput& input, const Contents& contents, Work& w) {
       local.factor *= std::sqrt(std::clamp<Real>(w.old_saturation[local.b], driest_wall, 1));
     }
   }, loop_tile);
+  gather_own_sides(input, w);
   w.supplies.clear();
   for (std::size_t i = 0; i < input.supplies.size(); ++i) {
     const Index local = w.local_of[input.supplies[i].node];
@@ -378,7 +397,53 @@ Real assemble(const TransportInput& input, Work& w, bool with_matrix) {
   return largest;
 }
 
+// Newton's unknown of a node is the left side of its own equation, its neighbours held,
+//   Y(s) = s + (dt/V) C u(s),   C = sum of its links' conductances, u its potential:
+// the saturation where storage rules, the potential where flow rules (a full yarn's p(s) is 260 times steeper than a
+// nearly full one's). In Y each equation is close to a straight line on both sides of s = 1, so the iteration needs
+// neither a limit nor a landing there. Any growing Y leads to the same solution; a rough u costs iterations only.
+Sloped own_side(const WettingModel& m, const Work& w, std::size_t i, Real s) {
+  const Index node = w.active[i];
+  if (m.params.model == TransportModel::as_printed) return {s, 1};
+  if (node < m.segments && m.params.model == TransportModel::kunzel) {
+    const Sloped phi = kunzel_potential(s);
+    return {s + w.own_share[i] * phi.value, 1 + w.own_share[i] * phi.slope};
+  }
+  const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, node, s, w.reached[i]) : filling_pressure(m, node, s);
+  const Sloped psi = YarnPotential{m.params.model, w.own_entry[i], m.params.yarn_size_index}(p.value);
+  return {s + w.own_share[i] * psi.value, 1 + w.own_share[i] * psi.slope * p.slope};
+}
+
+// The saturation after Newton's `change` of it, taken in Y; at least a tenth of what it was, so it stays above 0.
+Real moved_saturation(const WettingModel& m, const Work& w, std::size_t i, Real change) {
+  const Real s = w.saturation[i], straight = s + change;
+  const bool same_side = (s < 1) == (straight < 1);
+  if (std::abs(change) <= straight_change * s && same_side) return straight;
+  const Sloped here = own_side(m, w, i, s);
+  const Real wanted = here.value + here.slope * change;
+  const Real tolerance = straight_change * straight_change * std::abs(here.slope * change);
+  Real low = change > 0 ? s : 0.1 * s, high = change > 0 ? straight : s;
+  // Upwards Y may bend down (a pore that fills): then more than the straight step is needed, up to the top of the range.
+  if (change > 0) {
+    while (high < 2 && own_side(m, w, i, high).value < wanted) low = high, high = std::min<Real>(2, 2 * high);
+  } else if (own_side(m, w, i, low).value >= wanted) {
+    return low;
+  }
+  Real next = std::clamp(straight, low, high);
+  for (int k = 0; k < 40; ++k) {
+    const Sloped y = own_side(m, w, i, next);
+    if (std::abs(y.value - wanted) <= tolerance) break;
+    (y.value > wanted ? high : low) = next;
+    Real better = next - (y.value - wanted) / y.slope;
+    if (!(better > low && better < high)) better = low > 0 ? std::sqrt(low * high) : 0.5 * (low + high);
+    if (high - low <= 1e-12 * high) break;
+    next = better;
+  }
+  return next;
+}
+
 bool newton(const TransportInput& input, Work& w, TransportResult& result) {
+  const WettingModel& m = *input.model;
   w.previous = w.saturation;
   for (int iteration = 0; iteration < most_newton; ++iteration) {
     evaluate_all(input, w);
@@ -389,11 +454,13 @@ bool newton(const TransportInput& input, Work& w, TransportResult& result) {
     const LinearSolve solve = solve_bicgstab(w.matrix, w.residual, w.change, 1e-4, 1e-11, most_linear, w.linear);
     result.linear_iterations += solve.iterations;
     if (!std::isfinite(solve.residual)) return false;
-    for (std::size_t i = 0; i < w.active.size(); ++i) {
-      const Real next = damped_saturation(w.saturation[i], -w.change[i], w.previous[i]);
-      w.previous[i] = w.saturation[i];
-      w.saturation[i] = next;
-    }
+    const bool damped = iteration >= undamped_newton || m.params.model == TransportModel::as_printed;
+    parallel_for(w.active.size(), [&](std::size_t i) {
+      const Real s = w.saturation[i];
+      w.saturation[i] = damped ? damped_saturation(s, -w.change[i], w.previous[i])
+                               : moved_saturation(m, w, i, -w.change[i]);
+      w.previous[i] = s;
+    }, loop_tile);
   }
   return false;
 }

@@ -54,7 +54,7 @@ struct TransportWorkspace {
   std::vector<char> is_seed;
   std::vector<Index> active;
   std::vector<Real> volume, old_content, old_saturation, saturation, previous, pressure, pressure_slope, potential,
-      potential_slope, release, release_slope, residual, change, reached, scale;
+      potential_slope, release, release_slope, residual, change, reached, scale, own_share, own_entry;
   std::vector<LocalEdge> edges;
   std::vector<Index> row_start, row_edge, row_other;
   std::vector<LocalSupply> supplies;
