@@ -14,7 +14,7 @@ TEST(WetWall, ADryFaceShowsTheYarnsAdvancingAngle) {
   const Shape shape = sheet_shape(fabric.network, placement);
   const std::vector<float> dry(fabric.network.nodes(), 0);
   const Wall wall = wet_wall(shape, fabric.network, placement, map, dry);
-  EXPECT_NEAR(wall.cos_contact_angle_at({0, 0, 0.5e-3}), std::cos(radians(45)), 1e-6);
+  EXPECT_NEAR(wall.angles_at({0, 0, 0.5e-3}).cos_advancing, std::cos(radians(45)), 1e-6);
 }
 
 TEST(WetWall, AWetHydrophilicFaceIsMoreWettableByCassiesLaw) {
@@ -35,7 +35,7 @@ TEST(WetWall, AMixedClothShowsTheMeanOfItsYarns) {
   const std::vector<float> dry(fabric.network.nodes(), 0);
   const Wall wall = wet_wall(shape, fabric.network, placement, map, dry);
   // Equal shares of cotton (45) and polypropylene (100) within the reach of the kernel.
-  EXPECT_NEAR(wall.cos_contact_angle_at({0, 0, 0.5e-3}), 0.5 * (std::cos(radians(45)) + std::cos(radians(100))), 0.02);
+  EXPECT_NEAR(wall.angles_at({0, 0, 0.5e-3}).cos_advancing, 0.5 * (std::cos(radians(45)) + std::cos(radians(100))), 0.02);
 }
 
 TEST(FaceMap, FindsEveryNodeWithinReach) {

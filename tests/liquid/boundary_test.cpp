@@ -103,13 +103,15 @@ TEST(Boundary, several_walls_combine_and_their_gradients_add_up) {
   for (const WallSample& w : b.samples(0)) sum += w.gradient;
   EXPECT_EQ(sum.x, b.wall[0].x);
   EXPECT_EQ(sum.z, b.wall[0].z);
+  EXPECT_NEAR(b.push[0].z, pressure_gradient_ratio(at.z, h) * f.slope * (1 - s.lambda), 1e-3 * std::abs(f.slope));
+  EXPECT_NEAR(b.push[0].x, pressure_gradient_ratio(at.x, h) * s.slope * (1 - f.lambda), 1e-3 * std::abs(s.slope));
 }
 
 TEST(Boundary, a_wall_has_its_own_contact_angle_or_one_by_place) {
   const Shape plane = Plane{};
   Wall wall{&plane, {.contact_angle = radians(60)}, {}, false};
   EXPECT_NEAR(sampled({{0, 0, 1e-3}}, {&wall, 1}).samples(0)[0].cos_contact_angle, 0.5, 1e-6);
-  wall.cos_contact_angle_at = [](const Vec3& x) { return x.x > 0 ? 0.25f : -0.25f; };
+  wall.angles_at = [](const Vec3& x) { return x.x > 0 ? WallAngles{0.25f, 0.5f} : WallAngles{-0.25f, -0.25f}; };
   EXPECT_EQ(sampled({{1, 0, 1e-3}}, {&wall, 1}).samples(0)[0].cos_contact_angle, 0.25f);
   EXPECT_EQ(sampled({{-1, 0, 1e-3}}, {&wall, 1}).samples(0)[0].cos_contact_angle, -0.25f);
 }

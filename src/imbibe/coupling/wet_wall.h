@@ -5,7 +5,8 @@
 // liquid-filled share 1 - f of the face meets liquid, so
 //   cos(theta*) = f cos(theta) + (1 - f),   f = 0.5 the solid share of a woven face,
 // in between in proportion to the saturation. A face of yarns above 90 degrees stays dry and keeps its angle.
-// The base of a drop does not recede until the receding angle of the yarns is reached.
+// The same law with the receding angle holds a drop's base: it does not recede before that angle is reached, which is
+// smaller on wet cloth.
 // Tested in tests/coupling/wet_wall_test.cpp.
 #pragma once
 

@@ -15,6 +15,21 @@ namespace {
 
 Vec3 place(const Float4& p) { return {p.x, p.y, p.z}; }
 
+// pressure_gradient_ratio over q = d/H, from a table.
+float push_ratio(Real q) {
+  constexpr std::size_t entries = 256;
+  static const auto table = [] {
+    std::array<float, entries + 1> t{};
+    for (std::size_t k = 0; k <= entries; ++k) {
+      t[k] = static_cast<float>(pressure_gradient_ratio(static_cast<Real>(k) / entries, 1));
+    }
+    return t;
+  }();
+  const Real place = std::clamp(q, 0.0, 0.9999) * entries;
+  const auto k = static_cast<std::size_t>(place);
+  return table[k] + static_cast<float>(place - static_cast<Real>(k)) * (table[k + 1] - table[k]);
+}
+
 struct SolidSum {
   Real lambda = 0;
   Vec3 gradient{};
@@ -183,6 +198,11 @@ SolidSum sheet_sum(const Sheet& s, const SheetPlace& at, const Vec3& p, Real h) 
   return product.sum();
 }
 
+WallAngles angles_of(const WallMaterial& material) {
+  const auto advancing = static_cast<float>(std::cos(material.contact_angle));
+  return {advancing, material.receding_angle < 0 ? advancing : static_cast<float>(std::cos(material.receding_angle))};
+}
+
 bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample& out, std::uint32_t& side) {
   if (!w.everywhere && !w.reach.contains(p)) return false;
   SurfaceSample nearest;
@@ -206,12 +226,11 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample&
   out.normal = Vec3f(nearest.normal);
   out.lambda = static_cast<float>(sum.lambda);
   out.gradient = Vec3f(sum.gradient);
+  out.push = push_ratio(nearest.distance / support) * out.gradient;
   const Wall& wall = *w.wall;
-  out.cos_contact_angle = wall.cos_contact_angle_at ? wall.cos_contact_angle_at(p)
-                                                    : static_cast<float>(std::cos(wall.material.contact_angle));
-  out.cos_receding_angle = wall.material.receding_angle >= 0
-                               ? std::max(out.cos_contact_angle, static_cast<float>(std::cos(wall.material.receding_angle)))
-                               : out.cos_contact_angle;
+  const WallAngles angles = wall.angles_at ? wall.angles_at(p) : angles_of(wall.material);
+  out.cos_contact_angle = angles.cos_advancing;
+  out.cos_receding_angle = std::max(angles.cos_advancing, angles.cos_receding);
   // A quarter of a spacing is where the outermost layer rests; nearer the rate would grow without bound.
   const Real nearest_layer = 0.25 * support / support_over_spacing;
   out.shear = static_cast<float>(wall.material.friction *
@@ -234,9 +253,8 @@ struct NearestSamples {
     if (k < walls_per_particle) sample[static_cast<std::size_t>(k)] = s;
   }
 
-  // Weights each gradient by the liquid's part at the other walls; returns G and lambda together.
-  Float4 combine() {
-    Float4 all{0, 0, 0, 0};
+  // Weights each gradient by the liquid's part at the other walls; G and lambda together into `all`, P into push.
+  void combine(Float4& all, Float4& push) {
     float open = 1;
     for (int k = 0; k < count; ++k) {
       float others = 1;
@@ -245,11 +263,11 @@ struct NearestSamples {
       }
       WallSample& s = sample[static_cast<std::size_t>(k)];
       open *= 1 - s.lambda;
-      s.gradient *= others;
+      s.gradient *= others, s.push *= others;
       all.x += s.gradient.x, all.y += s.gradient.y, all.z += s.gradient.z;
+      push.x += s.push.x, push.y += s.push.y, push.z += s.push.z;
     }
     all.w = 1 - open;
-    return all;
   }
 };
 
@@ -262,6 +280,7 @@ void sample_walls(Boundary& boundary, std::span<const Float4> position, std::siz
   const bool sheets = std::any_of(ready.begin(), ready.end(), [](const PreparedWall& w) { return w.sheet.has_value(); });
   boundary.tiles.resize((count + default_tile - 1) / default_tile);
   boundary.wall.assign(padded_size(count), Float4{});
+  boundary.push.assign(padded_size(count), Float4{});
   boundary.side.resize(sheets ? count : 0);
   boundary.near_walls = parallel_sum(count, [&](std::size_t begin, std::size_t end) {
     Boundary::Tile& tile = boundary.tiles[begin / default_tile];
@@ -275,7 +294,7 @@ void sample_walls(Boundary& boundary, std::span<const Float4> position, std::siz
       for (const PreparedWall& w : ready) {
         if (sample_wall(w, place(position[i]), kernel.support, sample, side)) found.add(sample);
       }
-      if (found.count > 0) boundary.wall[i] = found.combine(), ++near;
+      if (found.count > 0) found.combine(boundary.wall[i], boundary.push[i]), ++near;
       if (sheets) boundary.side[i] = side;
       tile.samples.insert(tile.samples.end(), found.sample.begin(), found.sample.begin() + found.count);
       tile.first.push_back(static_cast<std::uint16_t>(tile.samples.size()));
@@ -292,7 +311,7 @@ void add_wall_impulse(const Boundary& boundary, std::span<const float> coefficie
     for (std::size_t k = 0; k + 1 < tile.first.size() && !tile.samples.empty(); ++k) {
       const Real c = scale * static_cast<Real>(coefficient[t * default_tile + k]);
       for (std::size_t s = tile.first[k]; s < tile.first[k + 1]; ++s) {
-        impulse[tile.samples[s].wall] += c * Vec3(tile.samples[s].gradient);
+        impulse[tile.samples[s].wall] += c * Vec3(tile.samples[s].push);
       }
     }
   }

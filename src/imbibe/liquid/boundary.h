@@ -1,7 +1,8 @@
 // What each particle sees of the solids, once per step.
 //
 //   lambda_i = integral of W(|x_i - y|) over the solid   [1]      G_i = grad_i lambda_i  [1/m], points into the solid
-//   several walls: lambda = 1 - prod_k (1 - lambda_k),  G = sum_k G_k prod_{l != k} (1 - lambda_l)
+//   P_i = r(d) G_i  [1/m]: what the pressure feels of the wall (kernel.h, pressure.h)
+//   several walls: lambda = 1 - prod_k (1 - lambda_k),  G = sum_k G_k prod_{l != k} (1 - lambda_l), P alike
 // A wall is locally a half-space behind its nearest surface point; balls, cylinders and cones are corrected for their
 // curvature (kernel.h). Edges of boxes and cones and mesh details smaller than the support are not resolved.
 // A two-sided wall (a thin Box: a textile sheet) is a half-space on the particle's own side.
@@ -25,6 +26,7 @@ struct WallSample {
   Vec3f normal{};               // unit, out of the solid
   float lambda = 0;             // of this wall alone
   Vec3f gradient{};             // this wall's part of G (weighted as above: the samples' gradients add up to G)
+  Vec3f push{};                 // this wall's part of P, weighted alike
   float cos_contact_angle = 0;
   float cos_receding_angle = 0;  // the same without hysteresis
   float friction = 0;
@@ -40,6 +42,7 @@ struct Boundary {
   };
   std::vector<Tile> tiles;             // of default_tile particles
   std::vector<Float4> wall;            // padded, per particle: xyz = G, w = lambda; 0 far from walls
+  std::vector<Float4> push;            // padded, per particle: xyz = P
   std::vector<std::uint32_t> side;     // per particle: sides of two-sided walls (neighbours.h); empty without such walls
   std::size_t near_walls = 0;          // particles with at least one sample
 
@@ -55,8 +58,8 @@ struct Boundary {
 void sample_walls(Boundary& boundary, std::span<const Float4> position, std::size_t count, std::span<const Wall> walls,
                   const Kernel& kernel);
 
-// impulse[wall] += scale * sum_i coefficient[i] * gradient of wall at i, in fixed order. With coefficient = pressure
-// acceleration factor k_i (a_i = -k_i G_i) and scale = m dt this is the impulse the liquid gives to each wall.
+// impulse[wall] += scale * sum_i coefficient[i] * P of wall at i, in fixed order. With coefficient = pressure
+// acceleration factor k_i (a_i = -k_i P_i) and scale = m dt this is the impulse the liquid gives to each wall.
 void add_wall_impulse(const Boundary& boundary, std::span<const float> coefficient, Real scale,
                       std::vector<Vec3>& impulse);
 

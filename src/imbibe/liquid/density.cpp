@@ -91,13 +91,16 @@ void compute_density(LiquidFields& f) {
       }
       Floats4 wall = simd::load4(&f.boundary.wall[i]);
       const Floats contact = wall_contact(gradient, wall, kernel.support);
+      const Floats4 bare = simd::load4(&f.boundary.push[i]);
       wall = {wall.x * contact, wall.y * contact, wall.z * contact, wall.w * contact};
+      const Floats3 push{bare.x * contact, bare.y * contact, bare.z * contact};
       simd::store4(&f.boundary.wall[i], wall.xyz(), wall.w);
+      simd::store4(&f.boundary.push[i], push, Floats{});
       simd::store(&f.wall_contact[i], contact);
       const Floats colour = own + volume * kernel.value_scale * sum;
       const Floats share = simd::min(colour / simd::max(1 - wall.w, 0.25f), 1.0f);
       const Floats3 air{gradient.x + share * wall.x, gradient.y + share * wall.y, gradient.z + share * wall.z};
-      const Floats3 doubled{gradient.x + 2 * wall.x, gradient.y + 2 * wall.y, gradient.z + 2 * wall.z};
+      const Floats3 doubled{gradient.x + 2 * push.x, gradient.y + 2 * push.y, gradient.z + 2 * push.z};
       simd::store(&f.colour[i], colour);
       simd::store(&f.filling[i], colour + wall.w);
       simd::store4(&f.colour_gradient[i], gradient, kernel.support * simd::sqrt(simd::dot(air, air)));

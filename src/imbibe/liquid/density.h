@@ -3,11 +3,11 @@
 //   C_i = V W(0) + sum_j V W_ij                   liquid's share of the kernel (colour), 1
 //   c_i = C_i + lambda_i                          filling: density / rest density with the walls counted as full
 //   n_i = sum_j V grad W_ij                       colour gradient, points into the liquid, 1/m
-//   1/a_ii, a_ii = |n_i + 2 G_i|^2 + sum_j |V grad W_ij|^2   diagonal of the pressure operator (pressure.h), 1/m2
-//   V = m/rho0 constant [m3]; lambda, G of the walls (boundary.h)
+//   1/a_ii, a_ii = |n_i + 2 P_i|^2 + sum_j |V grad W_ij|^2   diagonal of the pressure operator (pressure.h), 1/m2
+//   V = m/rho0 constant [m3]; lambda, G, P of the walls (boundary.h)
 //
 // Air gap. A wall counts only where liquid reaches it: with air between, it must not push (fragments would glide over a
-// wall on a cushion 1.5 spacings high). The walls' lambda and G of a particle are scaled by its wall_contact, 1 where
+// wall on a cushion 1.5 spacings high). The walls' lambda, G and P of a particle are scaled by its wall_contact, 1 where
 // -(n + G).m H < 0.5 (m out of the wall) and 0 above 0.9, as under a free surface.
 //
 // Air completion. A particle at a free surface misses neighbours, so its filling says nothing about its spacing. The

@@ -31,13 +31,13 @@ struct LiquidFields {
   std::vector<float> filling;         // C_i + lambda_i: density / rest density, walls included
   std::vector<float> colour;          // C_i = V sum W (own included), liquid only
   std::vector<Float4> colour_gradient;  // xyz = V sum grad W over liquid neighbours [1/m], w free
-  std::vector<float> wall_contact;    // 0..1: liquid reaches the walls under i (density.h); boundary.wall is scaled by it
+  std::vector<float> wall_contact;    // 0..1: liquid reaches the walls under i (density.h); boundary.wall, push are scaled by it
   std::vector<float> factor;          // solver's diagonal
   std::vector<float> source;          // solver's right side
   std::vector<float> density_error;   // relative, air completed (density.h)
   std::vector<float> applied;         // work space of solvers
   std::vector<float> pressure;        // Pa, of the projection
-  std::vector<float> wall_push;       // acceleration by the walls' pressure is -wall_push_i G_i; m2/s2
+  std::vector<float> wall_push;       // acceleration by the walls' pressure is -wall_push_i P_i; m2/s2
   std::vector<std::uint8_t> surface;  // set by the class stage: 1 = free surface (pressure is prescribed there)
 };
 

@@ -57,6 +57,21 @@ Real half_space_shear(Real distance, Real support) {
   return 10 / distance * 52.5 / support * std::max(0.0, integral);
 }
 
+Real pressure_gradient_ratio(Real distance, Real support) {
+  constexpr Real least = -12;  // reached at d = 0.8 H
+  constexpr int steps = 200;   // midpoints: 1e-4 of the integral
+  const PlaneIntegrals here = plane_integrals(std::max(0.0, distance / support), 1);
+  if (here.slope <= 0) return least;
+  Real near = 0;
+  for (int k = 0; k < steps; ++k) {
+    const Real y = (k + 0.5) / steps;
+    const PlaneIntegrals there = plane_integrals(y, 1);
+    const Real across = plane_integrals(std::abs(std::max(0.0, distance / support) - y), 1).slope;
+    near += there.slope * across / ((1 - there.lambda) * (1 - there.lambda)) / steps;
+  }
+  return std::max(least, 0.5 * (1 + (1 - here.lambda) * (2 * here.slope - near) / here.slope));
+}
+
 SolidIntegral solid_integral(Real distance, Real curvature, Real support) {
   const PlaneIntegrals p = plane_integrals(std::abs(distance), support);
   const SolidIntegral plane{distance >= 0 ? p.lambda : 1 - p.lambda, -p.slope};

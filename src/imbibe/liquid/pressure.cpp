@@ -22,11 +22,10 @@ void pressure_acceleration(LiquidFields& f) {
       const Floats c = simd::load(s.slope + k * lanes) * (here.w + there.w);
       sum.x += c * (here.x - there.x), sum.y += c * (here.y - there.y), sum.z += c * (here.z - there.z);
     }
-    const Floats4 wall = simd::load4(&f.boundary.wall[s.first]);
-    const Floats push = -2 * here.w;
-    simd::store4(&f.acceleration[s.first],
-                 Floats3{push * wall.x - volume * sum.x, push * wall.y - volume * sum.y, push * wall.z - volume * sum.z},
-                 Floats{});
+    const Floats4 wall = simd::load4(&f.boundary.push[s.first]);
+    const Floats twice = -2 * here.w;
+    const Floats3 a{twice * wall.x - volume * sum.x, twice * wall.y - volume * sum.y, twice * wall.z - volume * sum.z};
+    simd::store4(&f.acceleration[s.first], a, Floats{});
   });
 }
 
@@ -39,7 +38,7 @@ Floats compression_rate(const LiquidFields& f, const std::vector<Float4>& u, con
     const Floats4 there = simd::load4(f.position.data(), id), other = simd::load4(u.data(), id);
     sum += simd::load(s.slope + k * lanes) * simd::dot(own.xyz() - other.xyz(), here.xyz() - there.xyz());
   }
-  const Floats4 wall = simd::load4(&f.boundary.wall[s.first]);
+  const Floats4 wall = simd::load4(&f.boundary.push[s.first]);
   return f.volume * sum + 2 * simd::dot(own.xyz(), wall.xyz());
 }
 
@@ -85,13 +84,14 @@ Sums residual_sums(const LiquidFields& f, std::size_t begin, std::size_t end) {
   return sums;
 }
 
-// residual = D(u)/dt + relaxation e/dt^2.
+// residual = D(u)/dt + relaxation (1 - lambda) e/dt^2.
 Sums first_residual(LiquidFields& f, float dt, float relaxation) {
   const float rate = 1 / dt, density_rate = relaxation / (dt * dt);
   return parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; i += lanes) {
       const Floats d = compression_rate(f, f.velocity, f.neighbours.slice(i));
-      simd::store(&f.source[i], rate * d + density_rate * simd::load(&f.density_error[i]));
+      const Floats open = 1 - simd::load4(&f.boundary.wall[i]).w;
+      simd::store(&f.source[i], rate * d + density_rate * open * simd::load(&f.density_error[i]));
     }
     return residual_sums(f, begin, end);
   });
@@ -165,7 +165,7 @@ PressureReport project_velocity(LiquidFields& f, const PressureParams& params, R
     const float k = f.pressure[i];
     warm[i] = k;
     f.wall_push[i] = 2 * k * f.wall_contact[i];
-    f.pressure[i] = k * f.rest_density;
+    f.pressure[i] = k * f.rest_density * (1 - f.boundary.wall[i].w);
     f.position[i].w = 0;
   });
   return report;

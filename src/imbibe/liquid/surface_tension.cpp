@@ -167,7 +167,7 @@ struct LinePull {
 };
 
 // Contact line at one wall (contact_angle.h). others: gradient of all other wetted walls.
-LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall, float cos_receding) {
+LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall) {
   LinePull pull;
   const LiquidFields& f = t.f;
   const float support = f.neighbours.kernel.support;
@@ -192,16 +192,10 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall, float 
   pull.curvature = seen.curvature;
   const float strength = norm(wall.gradient);
   pull.force = inward * (-4 * t.gamma * strength * tau * f.volume * activity *
-                         unbalanced_cosine(cosine, wall.cos_contact_angle, cos_receding));
+                         unbalanced_cosine(cosine, wall.cos_contact_angle, wall.cos_receding_angle));
   pull.drag = activity * static_cast<float>(t.params.contact.line_friction) * std::sqrt(t.gamma * f.spacing / f.rest_density) *
               strength / std::max(wall.distance, 0.3f * f.spacing);
   return pull;
-}
-
-float cos_receding(const WallSample& wall, std::span<const Wall> walls) {
-  const WallMaterial& m = walls[wall.wall].material;
-  return m.receding_angle < 0 ? wall.cos_contact_angle
-                              : std::max(wall.cos_contact_angle, static_cast<float>(std::cos(m.receding_angle)));
 }
 
 // Force on particle i; what the line gives to walls is added to impulse (of the tile).
@@ -211,7 +205,7 @@ void force_on(const Stage& t, std::size_t i, std::span<const Wall> walls, Real d
   float kappa = t.s.curvature[i];
   Vec3f line{};
   for (const WallSample& wall : f.boundary.samples(i)) {
-    const LinePull pull = line_pull(t, i, wall, cos_receding(wall, walls));
+    const LinePull pull = line_pull(t, i, wall);
     const float w = first_layer(wall.distance, f.spacing);
     n = n * (1 - w) + pull.normal * (w * pull.activity);
     kappa = (1 - w * pull.activity) * kappa + w * pull.activity * pull.curvature;

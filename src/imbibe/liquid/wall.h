@@ -16,12 +16,17 @@ struct WallMaterial {
   Real friction = 1;            // 0 = free slip, 1 = the liquid's own viscosity acts at the wall (no slip)
 };
 
-// One wall for the duration of a step: not part of any state. `cos_contact_angle_at`, when set, replaces
-// material.contact_angle at a world point (a textile's face: angle by saturation).
+// Cosines of the angles at one place; cos_receding >= cos_advancing, equal without hysteresis.
+struct WallAngles {
+  float cos_advancing = 0, cos_receding = 0;
+};
+
+// One wall for the duration of a step: not part of any state. `angles_at`, when set, replaces the material's angles
+// at a world point (a textile's face: angle by saturation).
 struct Wall {
   const Shape* shape = nullptr;
   WallMaterial material;
-  std::function<float(const Vec3&)> cos_contact_angle_at;
+  std::function<WallAngles(const Vec3&)> angles_at;
   // The wall is passable from both sides (a textile sheet): particles on different sides do not see each other.
   bool two_sided = false;
 };

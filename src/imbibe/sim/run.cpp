@@ -17,6 +17,7 @@ static Real next_output(Real time, Real every, Real until) {
 RunEnd run(World& world, const RunPlan& plan, const RunHooks& hooks) {
   StepScratch scratch;
   StepReport report;
+  emit_due(world);  // the first output shows the drops that hang there at the start
   if (hooks.at_output) hooks.at_output(world, report);
   StepOptions options = plan.step;
   const std::uint64_t first_step = world.step;

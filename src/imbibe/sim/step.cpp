@@ -186,7 +186,7 @@ struct Moments {
   Moments& operator+=(const Moments& o) { return first += o.first, second += o.second, *this; }
 };
 
-// The liquid rests when its shape does: centre and extents have stayed within 1 % of the radius of a drop of all the
+// The liquid rests when its shape does: centre and extents have stayed within 0.3 % of the radius of a drop of all the
 // liquid for half its capillary time sqrt(rho R^3 / gamma). Particle speeds are no measure: a resting drop keeps a
 // residual motion of 2-10 % of the capillary velocity inside. Falling, spreading, oscillating or running liquid leaves
 // the band; so does a drop from which the textile drinks fast.
@@ -210,7 +210,7 @@ void judge_rest(World& world, const StepOptions& options) {
 
   const LiquidKind& kind = world.liquid.kind;
   const Real radius = std::cbrt(3 * world.liquid.mass() / (4 * pi * kind.density));
-  const Real band = 0.01 * radius;
+  const Real band = 0.003 * radius;
   if (pace.calm_since < 0 || norm(centre - pace.calm_centre) > band || norm(extent - pace.calm_extent) > band) {
     pace.calm_since = world.time;
     pace.calm_centre = centre;
@@ -240,6 +240,11 @@ Real textile_interval(const World& world, bool moving) {
 }
 
 }  // namespace
+
+void emit_due(World& world) {
+  StepReport report;
+  if (next_drop(world) <= world.time) emit_sources(world, report);
+}
 
 StepReport step(World& world, const StepOptions& options, StepScratch& scratch) {
   StepReport report;

@@ -48,6 +48,9 @@ struct StepScratch {
   ContactScratch contact;
 };
 
+// Emits what the sources owe at the world's time; step() does it too. For showing a world before its first step.
+void emit_due(World& world);
+
 StepReport step(World& world, const StepOptions& options, StepScratch& scratch);
 
 }  // namespace imbibe
