@@ -24,6 +24,7 @@
 #include "imbibe/sim/mechanism.h"
 #include "imbibe/sim/run.h"
 #include "imbibe/view/frame_from_world.h"
+#include "imbibe/view/run_frames.h"
 #include "imbibe/view/run_pictures.h"
 
 namespace fs = std::filesystem;
@@ -80,12 +81,19 @@ class RunSession {
   RunSession(const RunArguments& arguments, const CommandContext& context)
       : arguments_(arguments), scene_file_(arguments.scene) {
     if (arguments.resume && fs::is_directory(scene_file_)) folder_path_ = scene_file_, scene_file_ /= "scene.yaml";
+    if (arguments.resume && folder_path_.empty() && arguments.output.empty())
+      throw InputError("--resume wants the folder of the run: imbibe run FOLDER --resume");
     scene_ = read_scene(scene_file_, arguments.overrides);
     if (arguments.until > 0) scene_.duration = arguments.until;
     if (!arguments.output.empty()) folder_path_ = arguments.output;
     if (folder_path_.empty()) folder_path_ = free_run_folder(scene_file_);
     world_ = build_world(scene_, read_library(library_folders(scene_file_, context.data_folders)));
-    if (arguments.resume) resume();
+    const bool with_pictures = scene_.output.pictures && !arguments.no_pictures;
+    std::optional<Stage> stage;  // of a resumed run: that of its first picture
+    if (arguments.resume) {
+      if (with_pictures) stage = first_stage();
+      resume();
+    }
     RunSetup setup;
     setup.command = context.command_line;
     setup.title = scene_.title;
@@ -93,6 +101,7 @@ class RunSession {
     setup.seed = world_.seed;
     setup.threads = available_threads();
     setup.until_s = scene_.duration;
+    setup.every_s = output_interval(scene_);
     for (const Textile& textile : world_.textiles)
       setup.fabrics.emplace_back(textile.name,
                                  describe_fabric(*textile.fabric, {world_.liquid.kind.name, world_.liquid.kind.density,
@@ -105,8 +114,10 @@ class RunSession {
                                           : arguments.overwrite ? ExistingFolder::overwrite
                                                                 : ExistingFolder::refuse,
                                           world_);
-    if (scene_.output.pictures && !arguments.no_pictures)
-      pictures_ = std::make_unique<RunPictures>(folder_path_, scene_.picture);
+    if (with_pictures) {
+      pictures_ = std::make_unique<RunPictures>(folder_path_, scene_.picture, std::move(stage));
+      pictures_->take_up(folder_->outputs());
+    }
   }
 
   int go() {
@@ -122,9 +133,9 @@ class RunSession {
       moved_ += report.liquid_moved, wetted_ += report.wetting_ran;
       peak_density_error_ = std::max(peak_density_error_, report.peak_density_error);
       progress.show(progress_of(world, report, plan.until, seconds_since(started_)));
-      if (seconds_since(last_checkpoint_) < scene_.output.checkpoint_every.value_or(60)) return;
-      folder_->write_checkpoint(world);
-      last_checkpoint_ = std::chrono::steady_clock::now();
+      check_particles(world);
+      // At an output time the output comes first: its row holds numbers of this step, which a checkpoint does not keep.
+      if (!is_output_time(world)) checkpoint_when_due(world);
     };
     hooks.stop_requested = [] { return stop_signal != 0; };
     try {
@@ -140,8 +151,12 @@ class RunSession {
       throw;
     } catch (const OutputError& error) {  // a full disk, a vanished folder
       return fail(progress, error.what());
-    } catch (const InputError& error) {  // a limit of the scene
-      return fail(progress, error.what());
+    } catch (const InputError& error) {  // a limit of the scene: what there is stays, and can go on with a higher one
+      progress.finish();
+      std::fprintf(stderr, "%s\n", error.what());
+      folder_->write_checkpoint(world_);
+      close(RunStatus::failed, error.problems().front().message);
+      return 1;
     }
   }
 
@@ -150,19 +165,52 @@ class RunSession {
     std::vector<std::string> passed_over;
     const auto from = read_newest_checkpoint(folder_path_, world_, &passed_over);
     for (const std::string& damaged : passed_over) std::fprintf(stderr, "passed over: %s\n", damaged.c_str());
-    if (!from) throw InputError(fmt::format("{}: no checkpoint to resume from", folder_path_.string()));
-    std::fprintf(stderr, "resuming from %s at t = %.6g s\n", from->c_str(), world_.time);
+    if (from) std::fprintf(stderr, "resuming from %s at t = %.6g s\n", from->c_str(), world_.time);
+    else std::fprintf(stderr, "%s has no checkpoint yet: starting from the beginning\n", folder_path_.c_str());
+  }
+
+  // Where the pictures so far are seen from; nothing when the run has no file to say so.
+  std::optional<Stage> first_stage() const {
+    if (read_pvd(folder_path_ / "liquid.pvd").empty()) return {};
+    return stage_for(read_frame(open_run_frames(folder_path_, world_, scene_.title), 0), scene_.picture);
   }
 
   void write(const World& world, const StepReport& report) {
     const auto start = std::chrono::steady_clock::now();
-    folder_->write_output(world, report);
-    // A resumed run starts at a checkpoint, between two output times: that state is not one of the film.
-    const Real frames = world.time / output_interval(scene_);
-    if (pictures_ && (world.time >= scene_.duration || std::abs(frames - std::round(frames)) < 1e-6))
-      pictures_->add(frame_from_world(world, scene_.title),
-                     static_cast<int>(std::ceil(frames - 1e-6)));
+    const bool written = folder_->write_output(world, report);
+    // The state a resumed run starts from may be in the film already, or lie between two output times.
+    const int number = folder_->outputs() - 1;
+    if (pictures_ && (written || !fs::exists(folder_path_ / "pictures" / fmt::format("picture_{:06}.png", number))))
+      folder_->count(pictures_->add(frame_from_world(world, scene_.title), number));
     output_s_ += seconds_since(start);
+    if (world.step > 0) checkpoint_when_due(world);
+    check_disk(world);
+  }
+
+  bool is_output_time(const World& world) const {
+    const Real intervals = world.time / output_interval(scene_);
+    return world.time >= scene_.duration || std::abs(intervals - std::round(intervals)) < 1e-6;
+  }
+
+  void checkpoint_when_due(const World& world) {
+    if (seconds_since(last_checkpoint_) < scene_.output.checkpoint_every.value_or(60)) return;
+    folder_->write_checkpoint(world);
+    last_checkpoint_ = std::chrono::steady_clock::now();
+  }
+
+  void check_disk(const World& world) const {
+    const Real most = scene_.limits.max_disk;
+    if (folder_->bytes() <= most) return;
+    throw InputError(fmt::format(
+        "stopped at t = {:.6g} s: the run folder holds {:.4g} MB, more than limits.max_disk = {:.4g} MB; "
+        "go on with --resume --set limits.max_disk='{:.4g} MB'",
+        world.time, folder_->bytes() / 1e6, most / 1e6, std::ceil(2 * folder_->bytes() / 1e6)));
+  }
+
+  void check_particles(const World& world) const {
+    if (static_cast<Real>(world.liquid.particles.size()) <= scene_.limits.max_particles) return;
+    throw InputError(fmt::format("stopped at t = {:.6g} s: {} particles, more than limits.max_particles = {:.6g}",
+                                 world.time, world.liquid.particles.size(), scene_.limits.max_particles));
   }
 
   void close(RunStatus status, const std::string& reason) {

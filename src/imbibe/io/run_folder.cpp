@@ -67,10 +67,16 @@ void remove_earlier_run(const fs::path& folder) {
   }
 }
 
-// A time belongs to the grid of output times that the rows so far are on.
-bool is_output_time(Real time, const std::vector<Real>& rows) {
-  if (rows.size() < 2) return false;
-  const Real intervals = (time - rows[0]) / (rows[1] - rows[0]);
+Real bytes_of(const fs::path& file) {
+  std::error_code gone;
+  const std::uintmax_t bytes = fs::file_size(file, gone);
+  return gone ? 0 : static_cast<Real>(bytes);
+}
+
+// A time belongs to the grid of output times, `every` s apart or as the rows so far are.
+bool is_output_time(Real time, Real every, const std::vector<Real>& rows) {
+  if (every <= 0 && rows.size() < 2) return false;
+  const Real intervals = every > 0 ? time / every : (time - rows[0]) / (rows[1] - rows[0]);
   return std::abs(intervals - std::round(intervals)) < 1e-6;
 }
 
@@ -84,10 +90,26 @@ std::string file_name_part(const std::string& name) {
   return out.empty() ? "_" : out;
 }
 
+std::vector<std::string> collection_stems(const World& world) {
+  std::vector<std::string> taken;
+  const auto add = [&](const std::string& wanted) {
+    std::string stem = wanted;
+    for (int i = 2; std::find(taken.begin(), taken.end(), stem) != taken.end(); ++i) {
+      stem = fmt::format("{}-{}", wanted, i);
+    }
+    taken.push_back(stem);
+    return stem;
+  };
+  add("liquid");
+  for (const Textile& textile : world.textiles) add(add("textile_" + file_name_part(textile.name)) + "_pores");
+  return taken;
+}
+
 RunFolder::RunFolder(fs::path folder, RunSetup setup, ExistingFolder existing, const World& world)
     : folder_(std::move(folder)), setup_(std::move(setup)), started_at_(now_utc()) {
-  name_collections(world);
+  for (std::string& stem : collection_stems(world)) collections_.push_back({std::move(stem), {}});
   prepare(existing, world);
+  count_all();
   write_whole_file(folder_ / "scene.yaml", setup_.scene_yaml);
   write_run_json(world, RunStatus::running, "");
   series_ = SeriesFile(folder_ / "series.csv");
@@ -96,23 +118,23 @@ RunFolder::RunFolder(fs::path folder, RunSetup setup, ExistingFolder existing, c
                   setup_.command));
 }
 
-// Names of textiles may differ only in what a file name cannot carry.
-void RunFolder::name_collections(const World& world) {
-  std::vector<std::string> taken;
-  const auto free_stem = [&](const std::string& wanted) {
-    std::string stem = wanted;
-    for (int i = 2; std::find(taken.begin(), taken.end(), stem) != taken.end(); ++i) {
-      stem = fmt::format("{}-{}", wanted, i);
-    }
-    taken.push_back(stem);
-    return stem;
-  };
-  collections_.push_back({free_stem("liquid"), {}});
-  for (const Textile& textile : world.textiles) {
-    const std::string stem = free_stem("textile_" + file_name_part(textile.name));
-    collections_.push_back({stem, {}});
-    collections_.push_back({free_stem(stem + "_pores"), {}});
+void RunFolder::count(const fs::path& written) {
+  bytes_ += bytes_of(written);
+}
+
+void RunFolder::count_all() {
+  bytes_ = 0;
+  std::error_code none;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_, none)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file(none) && !is_numbered(name, "checkpoint_", ".h5")) count(entry.path());
   }
+  count_checkpoints();
+}
+
+void RunFolder::count_checkpoints() {
+  checkpoint_bytes_ = 0;
+  for (const fs::path& path : list_checkpoints(folder_)) checkpoint_bytes_ += bytes_of(path);
 }
 
 void RunFolder::prepare(ExistingFolder existing, const World& world) {
@@ -153,7 +175,7 @@ void RunFolder::continue_run(const World& world) {
   if (fs::exists(folder_ / "series.csv")) rows = read_series(folder_ / "series.csv").column("time_s");
   outputs_ = static_cast<int>(rows.size());
   const bool written = !rows.empty() && rows.back() >= world.time * (1 - 1e-12);
-  if (written || !is_output_time(world.time, rows)) skip_until_ = until;
+  if (written || !is_output_time(world.time, setup_.every_s, rows)) skip_until_ = until;
   if (rows.empty()) skip_until_.reset();
   for (Collection& collection : collections_) {
     collection.entries = read_pvd(folder_ / (collection.stem + ".pvd"));
@@ -166,11 +188,31 @@ void RunFolder::continue_run(const World& world) {
       fs::remove(path, ignored);
     }
   }
+  // So are files and pictures of later outputs: they come again, or belong to a run that is no more.
+  remove_later_outputs();
   const Json earlier = Json::parse(read_whole_file(folder_ / "run.json"), nullptr, false);
   if (earlier.is_object()) {
     earlier_wall_s_ = earlier.value("wall_s", 0.0);
     started_at_ = earlier.value("started_at", started_at_);
   }
+}
+
+void RunFolder::remove_later_outputs() {
+  std::vector<fs::path> later;
+  std::error_code none;
+  for (const Collection& collection : collections_) {
+    for (int i = outputs_;; ++i) {
+      const fs::path path = folder_ / fmt::format("{}_{:06}.vtp", collection.stem, i);
+      if (!fs::exists(path, none)) break;
+      later.push_back(path);
+    }
+  }
+  for (int i = outputs_;; ++i) {
+    const fs::path path = folder_ / "pictures" / fmt::format("picture_{:06}.png", i);
+    if (!fs::exists(path, none)) break;
+    later.push_back(path);
+  }
+  for (const fs::path& path : later) fs::remove(path, none);
 }
 
 Real RunFolder::wall_s() const {
@@ -180,14 +222,15 @@ Real RunFolder::wall_s() const {
 void RunFolder::write_frame(Collection& collection, const PolyData& data, const World& world) {
   const std::string file = fmt::format("{}_{:06}.vtp", collection.stem, outputs_);
   write_vtp(folder_ / file, data, {world.time, world.step});
+  count(folder_ / file);
   // Listed only now that it is there; an entry of the same number is of a run that stopped in between.
   std::erase_if(collection.entries, [&](const PvdEntry& entry) { return entry.file == file; });
   collection.entries.push_back({world.time, file});
   write_pvd(folder_ / (collection.stem + ".pvd"), collection.entries);
 }
 
-void RunFolder::write_output(const World& world, const StepReport& last_step) {
-  if (skip_until_ && world.time <= *skip_until_) return;
+bool RunFolder::write_output(const World& world, const StepReport& last_step) {
+  if (skip_until_ && world.time <= *skip_until_) return false;
   if (setup_.particle_files) write_frame(collections_[0], liquid_poly_data(world.liquid), world);
   if (setup_.textile_files) {
     for (std::size_t i = 0; i < world.textiles.size(); ++i) {
@@ -201,10 +244,12 @@ void RunFolder::write_output(const World& world, const StepReport& last_step) {
   // Replacing a file waits for the disk on common file systems (15 ms per output were measured with all of them), and
   // nobody reads this one more than once a second.
   if (wall_s() - run_json_wall_s_ > 1) write_run_json(world, RunStatus::running, "");
+  return true;
 }
 
 void RunFolder::write_checkpoint(const World& world) {
   const fs::path path = save_checkpoint(folder_, world);
+  count_checkpoints();
   log(fmt::format("checkpoint {} at t = {:.6g} s, step {}", path.filename().string(), world.time, world.step));
 }
 

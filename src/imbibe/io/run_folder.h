@@ -33,6 +33,7 @@ struct RunSetup {
   std::uint64_t seed = 1;
   int threads = 0;
   Real until_s = 0;
+  Real every_s = 0;        // between outputs; 0 = take it from the rows that are there
   // Derived numbers of each textile's fabric, as `imbibe check` prints them: name and text.
   std::vector<std::pair<std::string, std::string>> fabrics;
   MeasureParams measures;
@@ -51,8 +52,8 @@ class RunFolder {
 
   // One output time: the .vtp files, their .pvd, a row of series.csv, run.json. The state a run resumes from is left
   // out when it was written already or lies between two output times: a resumed run leaves the same files as one that
-  // was never stopped.
-  void write_output(const World& world, const StepReport& last_step);
+  // was never stopped. False when it was left out.
+  bool write_output(const World& world, const StepReport& last_step);
 
   void write_checkpoint(const World& world);
 
@@ -67,6 +68,11 @@ class RunFolder {
 
   int outputs() const { return outputs_; }
 
+  // Room that the folder takes on the disk, for limits.max_disk: counted once at the start, then by what is written.
+  // Pictures are written by others, who say so with `count`.
+  Real bytes() const { return bytes_ + checkpoint_bytes_; }
+  void count(const std::filesystem::path& written);
+
  private:
   struct Collection {  // one .pvd and its files
     std::string stem;
@@ -75,7 +81,9 @@ class RunFolder {
 
   void prepare(ExistingFolder existing, const World& world);
   void continue_run(const World& world);
-  void name_collections(const World& world);
+  void remove_later_outputs();
+  void count_all();
+  void count_checkpoints();
   void write_frame(Collection& collection, const PolyData& data, const World& world);
   void write_run_json(const World& world, RunStatus status, const std::string& reason);
   Real wall_s() const;
@@ -90,6 +98,8 @@ class RunFolder {
   std::string started_at_;
   Real earlier_wall_s_ = 0;  // of the runs before a resume
   Real run_json_wall_s_ = 0;  // when run.json was last written
+  Real bytes_ = 0;             // of all files but the checkpoints
+  Real checkpoint_bytes_ = 0;  // of the checkpoints that are kept
   int outputs_ = 0;
   std::optional<Real> skip_until_;  // s, outputs up to this time are there already
 };
@@ -99,6 +109,10 @@ PolyData liquid_poly_data(const Liquid& liquid);
 // `saturations`: node_saturations(). Every point of a yarn's line carries the values of the segment it lies on.
 PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& saturations);
 PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturations);
+
+// The names of the collections of .vtp files before "_000000.vtp" and ".pvd": liquid, then yarns and pores of every
+// textile. Names of textiles may differ only in what a file name cannot carry; these differ always.
+std::vector<std::string> collection_stems(const World& world);
 
 // `name` with everything that is not a letter, digit, '-' or '_' replaced by '_'.
 std::string file_name_part(const std::string& name);

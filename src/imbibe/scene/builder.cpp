@@ -50,6 +50,13 @@ void check_limits(const Scene& scene, const SceneEstimate& need, std::vector<Pro
                        bytes_text(need.disk_bytes), need.outputs, bytes_text(scene.limits.max_disk)));
 }
 
+// How often a source releases before the end of the run.
+Real releases(const Source& s, Real duration) {
+  if (s.start >= duration) return 0;
+  if (s.count <= 1) return 1;
+  return std::min(static_cast<Real>(s.count), std::floor((duration - s.start) / s.interval) + 1);
+}
+
 Placement placement_of(const TextileSpec& spec) {
   Placement p;
   p.origin = spec.centre;
@@ -210,7 +217,7 @@ SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind) {
   if (particle_mass > 0) {
     Real volume = 0;
     for (const Source& s : sources_of(scene))
-      volume += s.count * (s.form == SourceForm::box ? s.size.x * s.size.y * s.size.z : s.volume);
+      volume += releases(s, scene.duration) * (s.form == SourceForm::box ? s.size.x * s.size.y * s.size.z : s.volume);
     e.particles = volume * kind.density / particle_mass;
     e.spacing = std::cbrt(particle_mass / kind.density);
     if (kind.surface_tension > 0)
@@ -239,6 +246,9 @@ World build_world(const Scene& scene, const Library& library) {
   world.liquid.particle_mass = scene.liquid.particle_mass.value_or(0);
   // Only estimates so far: nothing is allocated for a scene that the machine cannot hold.
   check_limits(scene, estimate_scene(scene, world.liquid.kind), problems);
+  if (!scene.textiles.empty() && !(world.liquid.kind.viscosity > 0 && world.liquid.kind.surface_tension > 0))
+    problems.push_back(scene_problem(scene, "liquid.kind",
+                                     "a textile takes up only a liquid with viscosity and surface tension above 0"));
   if (!problems.empty()) throw InputError(std::move(problems));
 
   world.seed = scene.seed;

@@ -276,6 +276,20 @@ void resolve_bases(DataNode& node, const std::filesystem::path& file, int depth,
     set_at_path(node, change->keys[i], change->items[i], change->key_places[i], problems);
 }
 
+// Where the first byte stands that is no part of a UTF-8 character, or the text's length. Overlong forms and
+// surrogates are not looked for: nothing here depends on them.
+std::size_t first_not_utf8(const std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = byte < 0x80 ? 1 : byte >> 5 == 0x6 ? 2 : byte >> 4 == 0xE ? 3 : byte >> 3 == 0x1E ? 4 : 0;
+    if (length == 0 || i + length > text.size()) return i;
+    for (std::size_t k = 1; k < length; ++k)
+      if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return i;
+    i += length;
+  }
+  return text.size();
+}
+
 DataNode read_chain(const std::filesystem::path& file, const Place& asked_from, int depth,
                     std::vector<Problem>& problems, const DocumentLimits& limits) {
   const auto text = file_text(file, asked_from, depth == 0 ? "" : "extends", problems, limits);
@@ -307,6 +321,15 @@ DataNode parse_document(const std::string& text, const std::string& file, std::v
   const auto name = std::make_shared<const std::string>(file);
   if (text.find('\0') != std::string::npos) {
     problems.push_back(problem_at({name, 0, 0}, "", "is not a text file (it holds zero bytes)"));
+    return {};
+  }
+  if (const std::size_t at = first_not_utf8(text); at < text.size()) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    const std::size_t newline = text.rfind('\n', at);
+    const std::size_t column = at - (newline == std::string::npos ? 0 : newline + 1) + 1;
+    problems.push_back(problem_at({name, static_cast<int>(line), static_cast<int>(column)}, "",
+                                  fmt::format("byte 0x{:02X} is not UTF-8: save the file as UTF-8",
+                                              static_cast<unsigned char>(text[at]))));
     return {};
   }
   TreeBuilder builder(file, problems, limits);

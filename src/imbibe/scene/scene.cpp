@@ -43,6 +43,9 @@ void resolve_file_names(Scene& scene) {
   }
 }
 
+// Names become parts of file names, which end at 255 bytes.
+constexpr std::size_t longest_name = 150;
+
 template <class Item>
 void check_names(const std::vector<Item>& items, const std::string& list, const Scene& scene,
                  std::vector<Problem>& problems) {
@@ -50,6 +53,8 @@ void check_names(const std::vector<Item>& items, const std::string& list, const 
   for (std::size_t i = 0; i < items.size(); ++i) {
     const std::string key = fmt::format("{}[{}].name", list, i);
     if (items[i].name.empty()) problems.push_back(scene_problem(scene, key, "is empty"));
+    else if (items[i].name.size() > longest_name)
+      problems.push_back(scene_problem(scene, key, fmt::format("is longer than {} bytes", longest_name)));
     else if (!seen.insert(items[i].name).second)
       problems.push_back(scene_problem(scene, key, fmt::format("'{}' is already the name of another one", items[i].name)));
   }

@@ -23,6 +23,9 @@
 
 namespace imbibe {
 
+// m from the origin: the liquid's loops are in single precision, which places a particle to 1 um out there.
+inline constexpr Real farthest = 10;
+
 struct AirSpec {
   Real temperature = Air{}.temperature;      // K
   Real humidity = Air{}.humidity;            // 1
@@ -68,7 +71,9 @@ struct DropSpec {
 template <class V>
 void describe(V& v, DropSpec& p) {
   v.value("name", p.name, {.help = "name in the report"});
-  v.value("centre", p.centre, {.unit = "m", .shown = "mm", .required = true, .help = "centre of the ball at its start"});
+  v.value("centre", p.centre,
+          {.unit = "m", .shown = "mm", .min = -farthest, .max = farthest, .required = true,
+           .help = "centre of the ball at its start"});
   v.value("volume", p.volume,
           {.unit = "m3", .shown = "uL", .min = 0, .max = 1, .above_min = true, .required = true, .help = "volume"});
   v.value("velocity", p.velocity, {.unit = "m/s", .min = -100, .max = 100, .help = "velocity at its start"});
@@ -86,7 +91,8 @@ struct LiquidBoxSpec {
 template <class V>
 void describe(V& v, LiquidBoxSpec& p) {
   v.value("name", p.name, {.help = "name in the report"});
-  v.value("centre", p.centre, {.unit = "m", .shown = "mm", .required = true, .help = "centre of the box"});
+  v.value("centre", p.centre,
+          {.unit = "m", .shown = "mm", .min = -farthest, .max = farthest, .required = true, .help = "centre of the box"});
   v.value("size", p.size,
           {.unit = "m", .shown = "mm", .min = 0, .max = 100, .above_min = true, .required = true,
            .help = "lengths of its edges"});
@@ -174,7 +180,8 @@ struct TextileSpec {
 template <class V>
 void describe(V& v, TextileSpec& p) {
   v.value("name", p.name, {.help = "name of its files and of its part of the report"});
-  v.value("centre", p.centre, {.unit = "m", .shown = "mm", .help = "centre of its mid-plane"});
+  v.value("centre", p.centre,
+          {.unit = "m", .shown = "mm", .min = -farthest, .max = farthest, .help = "centre of its mid-plane"});
   v.value("weft_direction", p.weft_direction, {.min = -1e6, .max = 1e6, .help = "along the weft yarns; any length"});
   v.value("warp_direction", p.warp_direction,
           {.min = -1e6, .max = 1e6, .help = "along the warp yarns, square to the weft; the face is weft x warp"});
@@ -215,8 +222,12 @@ struct DomainSpec {
 
 template <class V>
 void describe(V& v, DomainSpec& p) {
-  v.value("lower", p.lower, {.unit = "m", .shown = "mm", .help = "lower corner; default from what is in the scene"});
-  v.value("upper", p.upper, {.unit = "m", .shown = "mm", .help = "upper corner; default from what is in the scene"});
+  v.value("lower", p.lower,
+          {.unit = "m", .shown = "mm", .min = -2 * farthest, .max = 2 * farthest,
+           .help = "lower corner; default from what is in the scene"});
+  v.value("upper", p.upper,
+          {.unit = "m", .shown = "mm", .min = -2 * farthest, .max = 2 * farthest,
+           .help = "upper corner; default from what is in the scene"});
 }
 
 struct OutputSpec {
@@ -230,7 +241,7 @@ void describe(V& v, OutputSpec& p) {
   v.value("every", p.every,
           {.unit = "s", .min = 0, .above_min = true, .help = "simulated time between outputs; default: duration / 50"});
   v.value("checkpoint_every", p.checkpoint_every,
-          {.unit = "s", .min = 1, .help = "wall-clock time between checkpoints; default: 60 s"});
+          {.unit = "s", .min = 0, .help = "wall-clock time between checkpoints; default: 60 s"});
   v.value("pictures", p.pictures, {.help = "a picture at every output, and the film"});
   v.value("particles", p.particles, {.help = "liquid_*.vtp files"});
   v.value("textiles", p.textiles, {.help = "textile_*.vtp files"});
@@ -250,7 +261,7 @@ void describe(V& v, LimitsSpec& p) {
   v.value("max_memory", p.max_memory,
           {.unit = "byte", .shown = "GB", .min = 1e6, .help = "most memory; default: 80 % of the machine's"});
   v.value("max_disk", p.max_disk, {.unit = "byte", .shown = "GB", .min = 1e6, .help = "most room of the run folder"});
-  v.value("max_steps", p.max_steps, {.min = 1, .help = "stop after so many steps; default: no limit"});
+  v.value("max_steps", p.max_steps, {.min = 1, .max = 1e15, .help = "stop after so many steps; default: no limit"});
 }
 
 struct Scene {

@@ -34,11 +34,12 @@ RunFrames open_run_frames(const std::filesystem::path& folder, const World& worl
   run.start = frame_from_world(world, title);
   run.start.particles.clear();
   run.collections.push_back({"", 0, 0, read_pvd(folder / "liquid.pvd")});
+  const std::vector<std::string> stems = collection_stems(world);  // liquid, then yarns and pores of each textile
   std::size_t first = 0;
-  for (const Textile& textile : world.textiles) {
+  for (std::size_t i = 0; i < world.textiles.size(); ++i) {
+    const Textile& textile = world.textiles[i];
     const std::size_t points = textile.fabric->network.points.size();
-    run.collections.push_back(
-        {textile.name, first, points, read_pvd(folder / ("textile_" + file_name_part(textile.name) + ".pvd"))});
+    run.collections.push_back({textile.name, first, points, read_pvd(folder / (stems[1 + 2 * i] + ".pvd"))});
     first += points;
   }
   for (const RunFrames::Collection& collection : run.collections)

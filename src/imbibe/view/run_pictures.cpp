@@ -26,6 +26,17 @@ std::filesystem::path RunPictures::add(const Frame& frame, std::optional<int> nu
   return path;
 }
 
+void RunPictures::take_up(int count) {
+  count_ = count;
+  for (int i = 0; film_ && i < count; ++i) {
+    try {
+      const Image image = read_png(folder_ / "pictures" / fmt::format("picture_{:06}.png", i));
+      if (image.width == options_.width && image.height == options_.height) film_->add(image);
+    } catch (const InputError&) {  // the film is shorter by this frame
+    }
+  }
+}
+
 FilmResult RunPictures::finish() {
   if (!film_) return {false, "no film was asked for"};
   const FilmResult result = film_->finish();

@@ -18,6 +18,9 @@ class RunPictures {
   RunPictures(std::filesystem::path folder, PictureOptions options, std::optional<Stage> stage = {});
   // Draws the frame and returns the picture's path. Numbers count up from 0, or from `number` when given.
   std::filesystem::path add(const Frame& frame, std::optional<int> number = {});
+  // Goes on with a film whose run was stopped: the pictures 0 to count - 1 that are there become its first frames. One
+  // that is missing, damaged or of another size is left out.
+  void take_up(int count);
   // Finishes the film. A film that cannot be made is said in the result, never thrown.
   FilmResult finish();
   int count() const { return count_; }
