@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,12 +19,14 @@
 
 namespace imbibe {
 
-// Compressed sparse rows; the diagonal is held apart.
+// Compressed sparse rows; the diagonal is held apart. Whoever changes row_start or column sets a new `pattern`, so that
+// a solver need not look for the places of its factors again; 0: never the same as another.
 struct GraphMatrix {
   std::vector<Index> row_start;  // rows + 1
   std::vector<Index> column;
   std::vector<Real> value;
   std::vector<Real> diagonal;
+  std::uint64_t pattern = 0;
   std::size_t rows() const { return diagonal.size(); }
 };
 
@@ -37,9 +40,17 @@ struct LinearSolve {
   Real residual = 0;  // largest entry of |b - A x|
 };
 
+// ILU(0) of the blocks on the diagonal. Row i has its entries below the diagonal in [first[i], upper[i]), those above in
+// [upper[i], last[i]), columns ascending. `place` leads from an entry of the matrix to its own (no_index: dropped).
+struct BlockFactors {
+  std::vector<Index> first, upper, last, column, place;
+  std::vector<Real> value, inverse_diagonal;
+  std::uint64_t pattern = 0;
+};
+
 // Scratch of the solver; reused between solves.
 struct LinearWorkspace {
-  GraphMatrix factors;
+  BlockFactors factors;
   std::vector<Real> r, r0, p, v, s, t, y, z;
 };
 

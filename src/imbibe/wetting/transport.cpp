@@ -98,7 +98,7 @@ void gather_own_sides(const TransportInput& input, Work& w) {
     Real conductance = 0, entry = 0;
     for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
       const auto& local = w.edges[w.row_edge[k]];
-      if (m.edges[local.edge].kind == EdgeKind::pore_pore) continue;
+      if (local.kind == EdgeKind::pore_pore) continue;
       conductance += local.factor, entry += local.factor * local.entry;
     }
     const bool segment = w.active[i] < m.segments && !m.params.hysteresis;
@@ -107,17 +107,70 @@ void gather_own_sides(const TransportInput& input, Work& w) {
   }, loop_tile);
 }
 
-// Sorts the set, gathers its state and its edges. `guess`: saturations to start from, by node (empty: the old ones).
+void order_active(const WettingModel& m, Work& w) {
+  w.active.clear();
+  for (const Index node : m.by_place) {
+    if (w.local_of[node] == no_index) continue;
+    w.local_of[node] = static_cast<Index>(w.active.size());
+    w.active.push_back(node);
+  }
+}
+
+// The set's edges and each node's entries in them. An edge belongs to the first of its nodes.
+void build_rows(const WettingModel& m, Work& w) {
+  if (w.rows_of == &m && w.rows_for == w.active) return;
+  const std::size_t n = w.active.size();
+  const auto each_link = [&](std::size_t i, auto&& call) {
+    const Index node = w.active[i];
+    for (Index k = m.row_start[node]; k < m.row_start[node + 1]; ++k) {
+      const Index other = w.local_of[m.row_other[k]];
+      if (other != no_index) call(m.row_edge[k], other);
+    }
+  };
+  std::vector<Index>& edge_start = w.rows_for;  // until the end
+  w.row_start.assign(n + 1, 0);
+  edge_start.assign(n + 1, 0);
+  parallel_for(n, [&](std::size_t i) {
+    each_link(i, [&](Index, Index other) { ++w.row_start[i + 1], edge_start[i + 1] += other > i; });
+  }, loop_tile);
+  for (std::size_t i = 0; i < n; ++i) w.row_start[i + 1] += w.row_start[i], edge_start[i + 1] += edge_start[i];
+  w.edges.resize(edge_start[n]);
+  w.row_edge.resize(w.row_start[n]);
+  w.row_other.resize(w.row_start[n]);
+  w.edge_place.resize(m.edges.size());
+  parallel_for(n, [&](std::size_t i) {
+    Index next = edge_start[i];
+    each_link(i, [&](Index e, Index other) {
+      if (other < i) return;
+      const WettingEdge& edge = m.edges[e];
+      w.edges[next] = {.edge = e, .a = w.local_of[edge.a], .b = w.local_of[edge.b], .kind = edge.kind};
+      w.edge_place[e] = next++;
+    });
+  }, loop_tile);
+  parallel_for(n, [&](std::size_t i) {
+    Index next = w.row_start[i];
+    each_link(i, [&](Index e, Index other) { w.row_edge[next] = w.edge_place[e], w.row_other[next++] = other; });
+  }, loop_tile);
+  w.matrix.row_start = w.row_start;
+  w.matrix.column = w.row_other;
+  w.matrix.value.resize(w.row_other.size());
+  w.matrix.diagonal.resize(n);
+  ++w.matrix.pattern;
+  w.rows_of = &m;
+  w.rows_for = w.active;
+}
+
+// Puts the set in order, gathers its state and its edges. `guess`: saturations to start from, by node (empty: the old ones).
 void gather(const TransportInput& input, const Contents& contents, Work& w) {
   const WettingModel& m = *input.model;
-  std::vector<Real> guess;
+  w.guess.clear();
   if (!w.saturation.empty()) {
-    guess.assign(m.nodes(), -1);
-    for (std::size_t i = 0; i < w.saturation.size(); ++i) guess[w.active[i]] = w.saturation[i];
+    w.guess.assign(m.nodes(), -1);
+    for (std::size_t i = 0; i < w.saturation.size(); ++i) w.guess[w.active[i]] = w.saturation[i];
   }
-  std::sort(w.active.begin(), w.active.end());
+  order_active(m, w);
+  build_rows(m, w);
   const std::size_t n = w.active.size();
-  for (Index i = 0; i < n; ++i) w.local_of[w.active[i]] = i;
   for (auto* vector : {&w.volume, &w.old_content, &w.old_saturation, &w.saturation, &w.pressure, &w.pressure_slope,
                        &w.potential, &w.potential_slope, &w.release, &w.release_slope, &w.residual, &w.change,
                        &w.reached, &w.scale, &w.own_share, &w.own_entry}) {
@@ -134,30 +187,12 @@ void gather(const TransportInput& input, const Contents& contents, Work& w) {
   evaluate_nodes(m, w);
   const bool kunzel = m.params.model == TransportModel::kunzel;
   const Real redistribution = kunzel && input.supplies.empty() ? m.params.redistribution_factor : 1;
-  w.edges.clear();
-  w.edge_place.assign(m.edges.size(), no_index);
-  w.row_start.assign(n + 1, 0);
-  w.row_edge.clear();
-  w.row_other.clear();
-  for (Index i = 0; i < n; ++i) {
-    const Index node = w.active[i];
-    for (Index k = m.row_start[node]; k < m.row_start[node + 1]; ++k) {
-      const Index other = w.local_of[m.row_other[k]], e = m.row_edge[k];
-      if (other == no_index) continue;
-      if (w.edge_place[e] == no_index) {
-        w.edge_place[e] = static_cast<Index>(w.edges.size());
-        const WettingEdge& edge = m.edges[e];
-        w.edges.push_back({.edge = e, .a = w.local_of[edge.a], .b = w.local_of[edge.b]});
-      }
-      w.row_edge.push_back(w.edge_place[e]);
-      w.row_other.push_back(other);
-    }
-    w.row_start[i + 1] = static_cast<Index>(w.row_edge.size());
-  }
+  const Vec3 weight = m.liquid.density * input.gravity;
   parallel_for(w.edges.size(), [&](std::size_t e) {
     auto& local = w.edges[e];
     const WettingEdge& edge = m.edges[local.edge];
     local.factor = edge.conductance;
+    local.head = dot(weight, edge.offset);
     if (edge.kind == EdgeKind::pore_pore || m.params.model == TransportModel::as_printed) return;
     const bool upper_is_a = w.pressure[local.a] >= w.pressure[local.b];
     const Index upstream = edge.kind == EdgeKind::segment_pore || upper_is_a ? local.a : local.b;
@@ -173,9 +208,9 @@ void gather(const TransportInput& input, const Contents& contents, Work& w) {
     const Index local = w.local_of[input.supplies[i].node];
     if (local != no_index && input.supplies[i].wetted_share > 0) w.supplies.push_back({.supply = i, .node = local});
   }
-  if (!guess.empty()) {
+  if (!w.guess.empty()) {
     for (std::size_t i = 0; i < n; ++i) {
-      if (guess[w.active[i]] >= 0) w.saturation[i] = guess[w.active[i]];
+      if (w.guess[w.active[i]] >= 0) w.saturation[i] = w.guess[w.active[i]];
     }
   }
 }
@@ -209,20 +244,21 @@ void evaluate_nodes(const WettingModel& m, Work& w) {
   }, loop_tile);
 }
 
-void printed_edge(const WettingModel& m, const Work& w, const WettingEdge& edge, Work::LocalEdge& local) {
+void printed_edge(const Work& w, Work::LocalEdge& local) {
   const Index a = local.a, b = local.b;
   Sloped at_b{w.potential[b], w.potential_slope[b]};
-  if (edge.kind == EdgeKind::segment_pore) at_b = printed_potential(w.saturation[b]);
-  (void)m;
+  if (local.kind == EdgeKind::segment_pore) at_b = printed_potential(w.saturation[b]);
   local.flow = local.factor * (w.potential[a] - at_b.value);
   local.slope_a = local.factor * w.potential_slope[a];
   local.slope_b = -local.factor * at_b.slope;
 }
 
-void yarn_edge(const WettingModel& m, const Work& w, const WettingEdge& edge, Real head, Work::LocalEdge& local) {
+void yarn_edge(const WettingModel& m, const Work& w, Work::LocalEdge& local) {
   const Index a = local.a, b = local.b;
+  const Real head = local.head;
   const TransportModel law = m.params.model;
-  if (edge.kind == EdgeKind::crossing && !edge.same_material) {
+  if (local.kind == EdgeKind::crossing && !m.edges[local.edge].same_material) {
+    const WettingEdge& edge = m.edges[local.edge];
     const Index na = w.active[a], nb = w.active[b];
     const Real share = local.factor / edge.conductance;
     const CrossingFlow x = crossing_flow(YarnPotential{law, m.entry[na], m.size_index[na]},
@@ -250,10 +286,10 @@ void yarn_edge(const WettingModel& m, const Work& w, const WettingEdge& edge, Re
 }
 
 // a is the segment. The pore's pressure is carried to the segment's height.
-void segment_pore_edge(const WettingModel& m, const Work& w, Real head, Work::LocalEdge& local) {
+void segment_pore_edge(const WettingModel& m, const Work& w, Work::LocalEdge& local) {
   const Index a = local.a, b = local.b, node = w.active[a];
   const YarnPotential psi{m.params.model, local.entry, m.size_index[node]};
-  const Sloped at_b = psi(w.pressure[b] - head);
+  const Sloped at_b = psi(w.pressure[b] - local.head);
   Sloped at_a{w.potential[a], w.potential_slope[a]};
   if (m.params.hysteresis && m.params.model == TransportModel::physical) {
     at_a = psi(w.pressure[a]);
@@ -264,25 +300,21 @@ void segment_pore_edge(const WettingModel& m, const Work& w, Real head, Work::Lo
   local.slope_b = -local.factor * at_b.slope * w.pressure_slope[b];
 }
 
-void pore_edge(const WettingEdge& edge, const Work& w, Real head, Work::LocalEdge& local) {
-  const Sloped at_a = valve(w.pressure[local.a] + 0.5 * head, edge.valve);
-  const Sloped at_b = valve(w.pressure[local.b] - 0.5 * head, edge.valve);
+void pore_edge(Real open, const Work& w, Work::LocalEdge& local) {
+  const Sloped at_a = valve(w.pressure[local.a] + 0.5 * local.head, open);
+  const Sloped at_b = valve(w.pressure[local.b] - 0.5 * local.head, open);
   local.flow = local.factor * (at_a.value - at_b.value);
   local.slope_a = local.factor * at_a.slope * w.pressure_slope[local.a];
   local.slope_b = -local.factor * at_b.slope * w.pressure_slope[local.b];
 }
 
-void evaluate_edges(const TransportInput& input, Work& w) {
-  const WettingModel& m = *input.model;
-  const Vec3 weight = m.liquid.density * input.gravity;
+void evaluate_edges(const WettingModel& m, Work& w) {
   parallel_for(w.edges.size(), [&](std::size_t e) {
     auto& local = w.edges[e];
-    const WettingEdge& edge = m.edges[local.edge];
-    const Real head = dot(weight, edge.offset);
-    if (m.params.model == TransportModel::as_printed) return printed_edge(m, w, edge, local);
-    if (edge.kind == EdgeKind::segment_pore) return segment_pore_edge(m, w, head, local);
-    if (edge.kind == EdgeKind::pore_pore) return pore_edge(edge, w, head, local);
-    yarn_edge(m, w, edge, head, local);
+    if (m.params.model == TransportModel::as_printed) return printed_edge(w, local);
+    if (local.kind == EdgeKind::segment_pore) return segment_pore_edge(m, w, local);
+    if (local.kind == EdgeKind::pore_pore) return pore_edge(m.edges[local.edge].valve, w, local);
+    yarn_edge(m, w, local);
   }, loop_tile);
 }
 
@@ -357,7 +389,7 @@ void evaluate_supplies(const TransportInput& input, Work& w) {
 
 void evaluate_all(const TransportInput& input, Work& w) {
   evaluate_nodes(*input.model, w);
-  evaluate_edges(input, w);
+  evaluate_edges(*input.model, w);
   evaluate_supplies(input, w);
 }
 
@@ -366,12 +398,6 @@ Real assemble(const TransportInput& input, Work& w, bool with_matrix) {
   const std::size_t n = w.active.size();
   const Real dt = input.dt;
   GraphMatrix& matrix = w.matrix;
-  if (with_matrix) {
-    matrix.row_start = w.row_start;
-    matrix.column = w.row_other;
-    matrix.value.resize(w.row_other.size());
-    matrix.diagonal.resize(n);
-  }
   parallel_for(n, [&](std::size_t i) {
     Real flow = w.release[i], slope = w.release_slope[i];
     const Real scale = dt / w.volume[i];
@@ -445,13 +471,19 @@ Real moved_saturation(const WettingModel& m, const Work& w, std::size_t i, Real 
 bool newton(const TransportInput& input, Work& w, TransportResult& result) {
   const WettingModel& m = *input.model;
   w.previous = w.saturation;
+  Real last = 1e-3;
   for (int iteration = 0; iteration < most_newton; ++iteration) {
     evaluate_all(input, w);
     const Real largest = assemble(input, w, true);
     if (!std::isfinite(largest)) return false;
     if (largest <= residual_tolerance) return true;
     ++result.newton_iterations;
-    const LinearSolve solve = solve_bicgstab(w.matrix, w.residual, w.change, 1e-4, 1e-11, most_linear, w.linear);
+    // As exact as the iteration can use (Eisenstat and Walker's second choice): Newton is far from its parabola at first.
+    const Real ratio = largest / last;
+    last = largest;
+    const Real forcing = std::clamp<Real>(ratio * ratio, 1e-4, 1e-2);
+    const LinearSolve solve = solve_bicgstab(w.matrix, w.residual, w.change, forcing, 0.1 * residual_tolerance,
+                                             most_linear, w.linear);
     result.linear_iterations += solve.iterations;
     if (!std::isfinite(solve.residual)) return false;
     const bool damped = iteration >= undamped_newton || m.params.model == TransportModel::as_printed;

@@ -40,6 +40,8 @@ struct TransportResult {
 struct TransportWorkspace {
   struct LocalEdge {
     Index edge = 0, a = 0, b = 0;       // global edge, local nodes
+    EdgeKind kind = EdgeKind::along_yarn;
+    Real head = 0;                      // Pa, rho g (z_b - z_a) downwards
     Real factor = 0;                    // conductance now (share of a pore's walls that is wetted, D_ww)
     Real entry = 0;                     // P_e of the curve that the link's potential follows
     Real flow = 0, slope_a = 0, slope_b = 0;  // m3/s, and per saturation of a and b
@@ -59,6 +61,10 @@ struct TransportWorkspace {
   std::vector<Index> row_start, row_edge, row_other;
   std::vector<LocalSupply> supplies;
   std::vector<Index> edge_place;        // per global edge
+  // What the rows were built for: they are kept while the solved set stays the same.
+  std::vector<Index> rows_for;
+  const WettingModel* rows_of = nullptr;
+  std::vector<Real> guess;              // per node, < 0: none
   std::vector<Real> supply_kg;          // per supply: taken in this step
   GraphMatrix matrix;
   LinearWorkspace linear;

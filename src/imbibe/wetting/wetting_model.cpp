@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <fmt/format.h>
 
 #include "imbibe/core/error.h"
@@ -343,6 +344,17 @@ void build_neighbours(WettingModel& m, const YarnNetwork& network) {
   fill(m.segments, segment, pore_node, m.segment_start, m.segment_pore);
 }
 
+void order_by_place(WettingModel& m, const YarnNetwork& network) {
+  std::vector<std::pair<Real, Index>> rows;  // pitch row
+  const Real pitch = network.pitch_y > 0 ? network.pitch_y : network.thickness;
+  for (Index i = 0; i < m.nodes(); ++i) rows.emplace_back(std::floor(m.centre[i].y / pitch + 1e-6), i);
+  std::sort(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
+    const auto key = [&](const auto& r) { return std::tuple{r.first, m.centre[r.second].x, r.second}; };
+    return key(a) < key(b);
+  });
+  for (const auto& row : rows) m.by_place.push_back(row.second);
+}
+
 }  // namespace
 
 WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams& params,
@@ -365,6 +377,7 @@ WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams
   add_edges(m, network);
   build_rows(m);
   build_neighbours(m, network);
+  order_by_place(m, network);
   if (params.sorption == SorptionModel::shells) m.shells = build_radial_shells(params.shells);
   return m;
 }

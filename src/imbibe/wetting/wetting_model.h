@@ -164,6 +164,9 @@ struct WettingModel {
   std::vector<WettingEdge> edges;
   std::vector<Index> row_start;       // nodes + 1
   std::vector<Index> row_edge, row_other;
+  // All nodes by place, pitch row after pitch row and along each row: neighbours in the cloth stand close together in
+  // the linear systems too, whose incomplete factors then keep their links.
+  std::vector<Index> by_place;
 
   // Who lies beside whom, whether liquid can pass or not (swelling, fibres without voids).
   std::vector<Index> pore_start, pore_segment;     // segments of pore i: [start[i], start[i+1])
