@@ -50,6 +50,20 @@ TEST(Density, spray_may_be_thin_but_not_compressed) {
   EXPECT_GE(density_error(0.8f, 0, 0), -0.05f);
 }
 
+TEST(Density, a_wall_counts_under_liquid_that_stands_on_it_and_not_across_a_gap) {
+  for (const Real gap : {0.0, 1.5}) {
+    const Block b(10, 5, 0.05, true, gap * spacing);
+    int counted = 0;
+    b.each_away_from_sides(10, [&](std::size_t i) {
+      const auto walls = b.f.boundary.samples(i);
+      if (walls.empty() || walls[0].lambda < 1e-3f) return;  // at the rim of the support the factor multiplies nothing
+      EXPECT_FLOAT_EQ(b.f.wall_contact[i], gap == 0 ? 1 : 0) << gap << " " << b.f.position[i].z / spacing;
+      ++counted;
+    });
+    EXPECT_GT(counted, 15) << gap;
+  }
+}
+
 TEST(Damping, conserves_momentum_takes_energy_and_leaves_a_rigid_motion) {
   Block b(8, 6, 0.1, false);
   const Vec3 before = b.momentum();

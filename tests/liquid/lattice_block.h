@@ -17,7 +17,7 @@ struct Block {
   Shape floor = Plane{};
   std::vector<Wall> walls;
 
-  Block(int cells, int layers, Real jitter, bool on_floor) {
+  Block(int cells, int layers, Real jitter, bool on_floor, Real gap = 0) {  // gap: to the floor, m
     liquid.particle_mass = liquid.kind.density * std::pow(static_cast<Real>(spacing), 3);
     const Real edge = std::cbrt(2.0) * liquid.spacing();
     Particles& p = liquid.particles;
@@ -27,7 +27,7 @@ struct Block {
           for (Real half : {0.25, 0.75}) {
             const std::uint64_t id = p.position.size();
             const auto shake = [&](std::uint64_t s) { return jitter * spacing * (2 * uniform({7, id, 0}, s) - 1); };
-            const Vec3 x = Vec3{i + half, j + half, k + half} * edge + Vec3{shake(0), shake(1), shake(2)};
+            const Vec3 x = Vec3{i + half, j + half, k + half} * edge + Vec3{shake(0), shake(1), gap + shake(2)};
             const auto speed = [&](std::uint64_t s) { return uniform({8, id, 0}, s) - 0.5; };
             add_particle(liquid, x, {speed(0), speed(1), speed(2)});
           }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "imbibe/core/error.h"
 #include "imbibe/liquid/source.h"
 
@@ -112,16 +114,18 @@ TEST(LiquidStep, many_drops_merge_without_a_pressure_burst) {
   const std::vector<Shape> shapes{Plane{}};
   const std::vector<Wall> walls = walls_of(shapes);
   LiquidScratch scratch;
-  Real time = 0, peak = 0;
+  Real time = 0, peak = 0, mean = 0;
   while (time < 0.02) {
     const LiquidStepReport report = step_liquid(liquid, {}, walls, earth, 1, scratch);
     time += report.step_s;
     peak = std::max(peak, report.peak_density_error);
     // A burst would throw particles faster than anything a hit at 0.6 m/s makes (jets of three times that).
     ASSERT_LT(report.max_speed, 2) << time;
-    EXPECT_LT(report.density_error, 0.02) << time;
+    mean = std::max(mean, report.density_error);
   }
-  RecordProperty("peak_density_error_percent", std::to_string(100 * peak));
+  std::printf("  merging: density error %.2f %% in the mean of the worst step, %.0f %% at one particle\n", 100 * mean,
+              100 * peak);
+  EXPECT_LT(mean, 0.02);
   EXPECT_LT(peak, 0.4);
 }
 

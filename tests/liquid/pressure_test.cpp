@@ -97,6 +97,17 @@ TEST(Pressure, leaves_a_velocity_without_compression_and_keeps_the_momentum_of_a
   EXPECT_LT(change, 0.05);
 }
 
+TEST(Pressure, of_a_floor_does_not_slow_a_block_that_has_not_reached_it) {
+  // A gap of 1.5 spacings: 30 % of the support reach into the floor. Away from its rim the block must fall on.
+  Block b(8, 6, 0.05, true, 1.5 * spacing);
+  for (std::size_t i = 0; i < b.f.count; ++i) b.f.velocity[i] = {0, 0, -0.1f, 0};
+  PressureParams params;
+  params.tolerance = 1e-6;
+  project_velocity(b.f, params, 1e-5, 0, b.liquid.particles.warm_pressure);
+  b.each_away_from_sides(8, [&](std::size_t i) { EXPECT_NEAR(b.f.velocity[i].z, -0.1f, 1e-3f); });
+  EXPECT_NEAR(b.momentum().z, -0.1, 1e-3);
+}
+
 TEST(Pressure, of_a_floor_stops_a_falling_block) {
   Block b(6, 6, 0, true);
   for (Float4& u : b.f.velocity) u = {};

@@ -73,8 +73,8 @@ Real half_space_shear(Real distance, Real support);
 // The gradient that the pressure feels from a flat wall over that of lambda (pressure.h), such that a uniform pressure
 // does not accelerate liquid next to it although the liquid's own pairs are weighted by 1/(1 - lambda):
 //   r = (1 + (1 - lambda) A_s/A)/2,  A_s = 2 A - integral over y > 0 of A(y) A(|d - y|)/(1 - lambda(y))^2
-// 1 at the wall's face if all weights were 1. The weights reach twice as far as the wall; r is cut where A is below 1/2500
-// of its largest value, so r A goes to 0 with A (left out: 1 % of the gradient at the wall). d < 0 counts as 0.
+// The weights reach twice as far as the wall; r is cut at -12 (d = 0.8 H, A = 1/300 of its largest value), so that r A goes
+// to 0 with A. Left out: 1 % of the gradient at the wall. d < 0 counts as 0.
 Real pressure_gradient_ratio(Real distance, Real support);
 // curvature = sum of the two principal curvatures of the solid, 1/m (> 0 convex): 2/R for a ball (exact), 1/R for a
 // cylinder (first order in H/R), 0 for a plane.

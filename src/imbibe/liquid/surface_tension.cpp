@@ -199,7 +199,7 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall) {
 }
 
 // Force on particle i; what the line gives to walls is added to impulse (of the tile).
-void force_on(const Stage& t, std::size_t i, std::span<const Wall> walls, Real dt, Vec3* impulse) {
+void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
   LiquidFields& f = t.f;
   Vec3f n = xyz(t.s.gradient[i]);
   float kappa = t.s.curvature[i];
@@ -301,7 +301,7 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
   scratch.wall_parts.assign(tiles * walls.size(), {});
   parallel_tiles(f.count, [&](std::size_t begin, std::size_t end) {
     Vec3* part = scratch.wall_parts.data() + begin / default_tile * walls.size();
-    for (std::size_t i = begin; i < end; ++i) force_on(t, i, walls, dt, part);
+    for (std::size_t i = begin; i < end; ++i) force_on(t, i, dt, part);
   });
   for (std::size_t k = 0; k < scratch.wall_parts.size(); ++k) impulse[k % walls.size()] += scratch.wall_parts[k];
   report.net_force = balance_free_drops(t);
