@@ -1,34 +1,18 @@
 // The built command on bad input: message on stderr with file, line and column; exit code 2; nothing written.
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "support/command.h"
+
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int code = -1;
-  std::string output;  // of stdout and stderr
-};
-
-Outcome run_command(const std::string& arguments) {
-  const std::string line = "IMBIBE_DATA_DIR='" IMBIBE_SOURCE_DIR "' '" IMBIBE_COMMAND "' " + arguments + " 2>&1";
-  FILE* pipe = popen(line.c_str(), "r");
-  Outcome outcome;
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) outcome.output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
+using imbibe::test::Outcome;
+using imbibe::test::run_command;
 
 class BadInput : public ::testing::Test {
  protected:
@@ -150,6 +134,67 @@ TEST_F(BadInput, AnOutputFolderThatCannotBeWrittenIsARunTimeFailureAtOnce) {
   EXPECT_EQ(outcome.code, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("cannot create the run folder"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("taken"), std::string::npos) << outcome.output;
+}
+
+TEST_F(BadInput, TextThatIsNotUtf8IsRefusedWithItsPlace) {
+  std::string text = scene_text;
+  text.replace(text.find("small"), 5, "t\xE9te");  // Latin-1
+  const std::string file = write("scene.yaml", text);
+  const Outcome outcome = run_command("check " + file);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find(file + ":2:9: error: byte 0xE9 is not UTF-8"), std::string::npos) << outcome.output;
+  text.replace(text.find("t\xE9te"), 4, "t\xC3\xAAte");
+  EXPECT_EQ(run_command("check " + write("utf8.yaml", text)).code, 0);
+}
+
+TEST_F(BadInput, ADropFartherAwayThanSinglePrecisionPlacesItIsRefused) {
+  std::string text = scene_text;
+  text.replace(text.find("[0, 0, 5 mm]"), 12, "[0, 0, 1e300]");
+  const Outcome outcome = run_command("check " + write("scene.yaml", text));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find(":8:21: error: liquid.drops[0].centre[2]: 1e300 is outside"), std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(BadInput, ANameTooLongForAFileNameIsRefusedBeforeTheRun) {
+  std::string text = scene_text;
+  text.replace(text.find("swatch"), 6, std::string(300, 'x'));
+  const Outcome outcome = run_command("check " + write("scene.yaml", text));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find("textiles[0].name: is longer than"), std::string::npos) << outcome.output;
+}
+
+TEST_F(BadInput, ALiquidWithoutViscosityIsRefusedAtItsOwnKey) {
+  const Outcome outcome = run_command("check " + write("scene.yaml", scene_text) + " --set liquid.kind.viscosity=0");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find("error: liquid.kind"), std::string::npos) << outcome.output;
+}
+
+TEST_F(BadInput, OnlyTheDropsThatFallBeforeTheEndCountAgainstTheLimitOfParticles) {
+  std::string text = scene_text;
+  const std::string drops = "  drops:\n    - {centre: [0, 0, 5 mm], volume: 20 uL}\n";
+  text.replace(text.find(drops), drops.size(),
+               "  droppers:\n    - {centre: [0, 0, 5 mm], volume: 20 uL, interval: 1 s, count: 1000000}\n");
+  EXPECT_EQ(run_command("check " + write("one.yaml", text)).code, 0) << "one drop falls in 1 ms";
+  const Outcome outcome = run_command("check " + write("many.yaml", text) + " --set duration='1e6 s' --set limits.max_disk='1e9 GB'");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find("more than limits.max_particles"), std::string::npos) << outcome.output;
+}
+
+TEST_F(BadInput, FilesThatAreNoScenesAreRefusedWhateverTheyHold) {
+  const std::string deep(100000, '['), keys(20000, '{');
+  const std::string contents[] = {"", "\n\n", "hello", "- a\n", deep, keys, std::string(1000, '\0'), "a: *b\n", "\xFF\xFE\x00",
+                                  "version: 1\n\tduration: 1\n", "a: &a [*a]\n", "%YAML 9.9\n---\n{}\n"};
+  for (const std::string& content : contents) {
+    const std::string file = write("no_scene.yaml", content);
+    for (const char* command : {"check ", "fabric ", "run "}) {
+      const Outcome outcome = run_command(command + file, "ulimit -v 4000000;");
+      EXPECT_EQ(outcome.code, 2) << command << content.substr(0, 20) << outcome.output.substr(0, 500);
+      EXPECT_NE(outcome.output.find(file), std::string::npos) << outcome.output.substr(0, 500);
+    }
+  }
+  for (const char* device : {"/dev/zero", "/dev/null", "/"})
+    EXPECT_EQ(run_command(std::string("check ") + device, "ulimit -v 4000000;").code, 2) << device;
 }
 
 }  // namespace

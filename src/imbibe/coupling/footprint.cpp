@@ -75,21 +75,23 @@ void find_patches(const Liquid& liquid, Real particle_area, Footprint& f) {
   for (std::size_t s = 0; s < f.supplies.size(); ++s) f.supply_patch[s] = f.patch_of[owner[s]];
 }
 
-void set_pressures(const Liquid& liquid, const FaceMap& map, const ExchangeState& exchange, Footprint& f) {
+// Total head of the liquid in Pa: no steady pressure at the sheet exceeds it.
+Real total_head(const Liquid& liquid, const Placement& placement, const Vec3& gravity) {
+  Real head = 0;
+  const Particles& p = liquid.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Float4 &x = p.position[i], &v = p.velocity[i];
+    const Real fall = -dot(gravity, Vec3(x.x, x.y, x.z) - placement.origin);
+    head = std::max(head, fall + 0.5 * squared_norm(Vec3(v.x, v.y, v.z)));
+  }
+  const Real radius = std::cbrt(3 * liquid.mass() / (4 * pi * liquid.kind.density));
+  return liquid.kind.density * head + 2 * liquid.kind.surface_tension / radius;
+}
+
+void set_pressures(Real head, const ExchangeState& exchange, Footprint& f) {
   Real area = 0;
   for (const FootprintPatch& patch : f.patches) area += patch.area;
-  std::vector<Real> cosine(f.patches.size(), 0), weight(f.patches.size(), 0);
-  for (std::size_t s = 0; s < f.supplies.size(); ++s) {
-    cosine[f.supply_patch[s]] += f.supplies[s].wetted_share * map.cos_advancing[f.supplies[s].node];
-    weight[f.supply_patch[s]] += f.supplies[s].wetted_share;
-  }
-  for (std::size_t i = 0; i < f.patches.size(); ++i) {
-    FootprintPatch& patch = f.patches[i];
-    const Real mean = weight[i] > 0 ? std::clamp(cosine[i] / weight[i], -1.0, 1.0) : 0;
-    const Real radius = std::sqrt(patch.area / pi);
-    patch.pressure = std::max(exchange.normal_force, 0.0) / area +
-                     2 * liquid.kind.surface_tension * std::sqrt(1 - mean * mean) / radius;
-  }
+  for (FootprintPatch& patch : f.patches) patch.pressure = std::clamp(exchange.normal_force / area, 0.0, head);
 }
 
 void add_waiting_film(const Liquid& liquid, const FaceMap& map, const ExchangeState& exchange, Footprint& f) {
@@ -111,7 +113,7 @@ void add_waiting_film(const Liquid& liquid, const FaceMap& map, const ExchangeSt
 }  // namespace
 
 void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
-                    const ExchangeState& exchange, Footprint& f) {
+                    const Vec3& gravity, const ExchangeState& exchange, Footprint& f) {
   clear(f, network.nodes());
   const Real dx = liquid.spacing(), reach_z = 0.5 * network.thickness + touch_distance(dx);
   const Real half_x = 0.5 * network.size_x, half_y = 0.5 * network.size_y;
@@ -129,7 +131,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Plac
     f.on_back.push_back(p.z < 0);
   }
   find_patches(liquid, dx * dx, f);
-  set_pressures(liquid, map, exchange, f);
+  if (!f.empty()) set_pressures(total_head(liquid, placement, gravity), exchange, f);
   for (std::size_t p = 0; p < f.particle.size(); ++p) {
     const FootprintPatch& patch = f.patches[f.patch_of[p]];
     const Real left = liquid.particle_mass * std::max(1 - patch.owed_kg / patch.touching_kg, 0.0);

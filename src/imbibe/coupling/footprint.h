@@ -7,9 +7,11 @@
 //   f_k      = min(1, sum_p A_p W(|x_p - x_k|))                      wetted share of node k
 //   M_k      = sum_p share_pk m_p (1 - owed/touching mass)           what node k may take in this step
 // A patch is a set of touching particles joined through common nodes: one pool of debt and one pressure,
-//   p = F_n / A + 2 gamma sin(theta) / a,  A = n A_p,  a = sqrt(A / pi):
-// at rest F_n is the liquid's weight, in an impact it holds the momentum given up; the second term is the pressure under
-// the curved surface that the contact line holds down (force balance of a sessile drop).
+//   p = min( F_n / A,  rho max(g h + v^2 / 2) + 2 gamma / R ),  A = sum of A_p over all patches.
+// F_n is the averaged normal force of the liquid on the sheet: at rest its weight and the pull 2 pi a gamma sin(theta) of
+// the contact line, in an impact also the momentum given up. The second form is the total head of the liquid (h height over
+// the face, v speed, R radius of a drop of all of it), which no steady pressure exceeds: in the first touch of an impact a
+// force averaged over 2 ms stands on an area of a few particles and says nothing.
 // Raw particle pressures are too noisy for thresholds of some 100 Pa. Several patches share F_n by area.
 #pragma once
 
@@ -55,7 +57,7 @@ struct Footprint {
 
 // Fills `footprint` (its memory is reused). Does not change any state.
 void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
-                    const ExchangeState& exchange, Footprint& footprint);
+                    const Vec3& gravity, const ExchangeState& exchange, Footprint& footprint);
 
 // m; nearer than this to a face a particle touches it: the first layer of particles above the wall.
 inline Real touch_distance(Real spacing) { return 0.9 * spacing; }

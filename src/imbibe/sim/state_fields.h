@@ -44,6 +44,7 @@ void visit_state(Visitor& v, AnyWorld& world) {
   v.value("calm_since", world.pace.calm_since);
   v.value("calm_centre", world.pace.calm_centre);
   v.value("calm_extent", world.pace.calm_extent);
+  v.value("calm_velocity", world.pace.calm_velocity);
   v.value("particles_at_rest", world.pace.particles_at_rest);
 
   v.group("liquid");

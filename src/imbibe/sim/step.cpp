@@ -127,7 +127,7 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   Textile& textile = world.textiles[index];
   const YarnNetwork& network = textile.fabric->network;
   Footprint& footprint = scratch.footprint;
-  find_footprint(world.liquid, network, textile.placement, *textile.faces, textile.exchange, footprint);
+  find_footprint(world.liquid, network, textile.placement, *textile.faces, world.gravity, textile.exchange, footprint);
   scratch.taken_kg.assign(footprint.supplies.size(), 0);
   const Vec3 gravity{dot(world.gravity, textile.placement.u), dot(world.gravity, textile.placement.v),
                      dot(world.gravity, textile.placement.n)};
@@ -180,16 +180,20 @@ void leave(World& world, StepScratch& scratch, StepReport& report) {
   report.left = remove_particles(world.liquid.particles, scratch.dead);
 }
 
-// Sums over the particles that make centre and extents.
+// Sums over the particles that make centre, extents and mean velocity; and the greatest squared speed.
 struct Moments {
-  Vec3 first{}, second{};
-  Moments& operator+=(const Moments& o) { return first += o.first, second += o.second, *this; }
+  Vec3 first{}, second{}, velocity{};
+  Real fastest = 0;
+  Moments& operator+=(const Moments& o) {
+    fastest = std::max(fastest, o.fastest);
+    return first += o.first, second += o.second, velocity += o.velocity, *this;
+  }
 };
 
-// The liquid rests when its shape does: centre and extents have stayed within 0.3 % of the radius of a drop of all the
-// liquid for half its capillary time sqrt(rho R^3 / gamma). Particle speeds are no measure: a resting drop keeps a
-// residual motion of 2-10 % of the capillary velocity inside. Falling, spreading, oscillating or running liquid leaves
-// the band; so does a drop from which the textile drinks fast.
+// The liquid rests when its shape does: centre and extents have stayed within a twentieth of a particle spacing for half
+// the capillary time sqrt(rho R^3 / gamma) of a drop of all the liquid. Particle speeds are no measure: a resting drop
+// keeps a residual motion of 2-10 % of the capillary velocity inside. Falling, spreading, oscillating or running liquid
+// leaves the band; so does a drop from which the textile drinks fast.
 void judge_rest(World& world, const StepOptions& options) {
   Pace& pace = world.pace;
   const Particles& p = world.liquid.particles;
@@ -200,25 +204,35 @@ void judge_rest(World& world, const StepOptions& options) {
       const Vec3 x(p.position[i].x, p.position[i].y, p.position[i].z);
       m.first += x;
       m.second += Vec3{x.x * x.x, x.y * x.y, x.z * x.z};
+      const Vec3 u(p.velocity[i].x, p.velocity[i].y, p.velocity[i].z);
+      m.velocity += u;
+      m.fastest = std::max(m.fastest, squared_norm(u));
     }
     return m;
   });
   const auto n = static_cast<Real>(p.size());
-  const Vec3 centre = sum.first / n, square = sum.second / n;
+  const Vec3 centre = sum.first / n, square = sum.second / n, velocity = sum.velocity / n;
   const auto spread = [](Real mean_square, Real mean) { return std::sqrt(std::max(mean_square - mean * mean, 0.0)); };
   const Vec3 extent{spread(square.x, centre.x), spread(square.y, centre.y), spread(square.z, centre.z)};
 
   const LiquidKind& kind = world.liquid.kind;
   const Real radius = std::cbrt(3 * world.liquid.mass() / (4 * pi * kind.density));
-  const Real band = 0.003 * radius;
+  const Real band = 0.05 * world.liquid.spacing();
   if (pace.calm_since < 0 || norm(centre - pace.calm_centre) > band || norm(extent - pace.calm_extent) > band) {
     pace.calm_since = world.time;
     pace.calm_centre = centre;
     pace.calm_extent = extent;
+    pace.calm_velocity = velocity;
     return;
   }
   const Real window = 0.5 * std::sqrt(kind.density * radius * radius * radius / kind.surface_tension);
-  if (world.time - pace.calm_since < window) return;
+  const Real waited = world.time - pace.calm_since;
+  if (waited < window) return;
+  // What has just been let go falls too little to leave the band, but gains g t; single fast particles are spray.
+  const Real gained = norm(velocity - pace.calm_velocity);
+  const Real capillary_speed = std::sqrt(kind.surface_tension / (kind.density * radius));
+  if (gained > 0.3 * norm(world.gravity) * waited + 1e-3 * capillary_speed) return;
+  if (sum.fastest > 4 * capillary_speed * capillary_speed) return;
   pace.resting = true;
   pace.particles_at_rest = p.size();
 }

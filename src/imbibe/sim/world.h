@@ -48,6 +48,7 @@ struct Pace {
   Real calm_since = -1;
   Vec3 calm_centre{};            // m
   Vec3 calm_extent{};            // m, root mean square distance from the centre along x, y, z
+  Vec3 calm_velocity{};          // m/s, mean velocity at calm_since
   std::uint64_t particles_at_rest = 0;  // particles there were when it came to rest
 };
 

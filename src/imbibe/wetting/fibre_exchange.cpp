@@ -134,6 +134,15 @@ Real exchange_vapour(const WettingModel& m, Contents& contents, const Air& air, 
   const auto wet_share = [&](std::size_t s) {
     return m.volume[s] > 0 ? wetted_fibres(contents.liquid_kg[s] / (m.liquid.density * m.volume[s]), free_water) : 0;
   };
+  // A fibre in equilibrium with the air gives and takes nothing: most of a cloth that is dry.
+  std::vector<Real> at_rest(m.fibres.size(), -1);
+  if (m.params.sorption == SorptionModel::linear) {
+    for (std::size_t i = 0; i < at_rest.size(); ++i) at_rest[i] = equilibrium_regain(m.fibres[i], air.humidity);
+  }
+  const auto rests = [&](std::size_t s) {
+    const Real regain = at_rest[m.segment_type[s]];
+    return std::abs(node_regain(m, contents, s) - regain) <= 1e-14 * regain;
+  };
   // Pores first: they look at the segments' liquid as it was.
   Real total = parallel_sum(m.pores, [&](std::size_t begin, std::size_t end) {
     Real given = 0;
@@ -157,7 +166,7 @@ Real exchange_vapour(const WettingModel& m, Contents& contents, const Air& air, 
       const Drying drying = dry(held, wet_rate * m.vapour_area[s], dt);
       held = drying.kg < held ? held - drying.kg : 0;
       given += drying.kg;
-      if (m.params.sorption != SorptionModel::none && drying.time < dt) {
+      if (m.params.sorption != SorptionModel::none && drying.time < dt && !rests(s)) {
         given += vapour_from_fibres(m, contents, s, density, air.humidity, air, dt - drying.time);
       }
     }

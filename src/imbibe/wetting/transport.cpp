@@ -504,23 +504,26 @@ void limit_outflows(const TransportInput& input, Work& w) {
   const Real dt = input.dt;
   auto &supply_in = w.residual, &supply_out = w.change;
   for (int pass = 0; pass < 50; ++pass) {
-    bool cut = false;
     std::fill(supply_in.begin(), supply_in.end(), 0);
     std::fill(supply_out.begin(), supply_out.end(), 0);
     for (const auto& supply : w.supplies) {
       (supply.flow > 0 ? supply_in : supply_out)[supply.node] += std::abs(supply.flow);
     }
-    for (Index i = 0; i < w.active.size(); ++i) {
-      Real in = supply_in[i], out = w.release[i] + supply_out[i];
-      for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
-        const auto& edge = w.edges[w.row_edge[k]];
-        const Real away = edge.a == i ? edge.flow : -edge.flow;
-        (away > 0 ? out : in) += std::abs(away);
+    const char cut = parallel_max(w.active.size(), char{0}, [&](std::size_t begin, std::size_t end) {
+      char cut_here = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        Real in = supply_in[i], out = w.release[i] + supply_out[i];
+        for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
+          const auto& edge = w.edges[w.row_edge[k]];
+          const Real away = edge.a == i ? edge.flow : -edge.flow;
+          (away > 0 ? out : in) += std::abs(away);
+        }
+        w.scale[i] = 1;
+        const Real held = w.old_content[i] + dt * in;
+        if (out > 0 && dt * out > held * (1 + 1e-15)) w.scale[i] = std::max<Real>(0, held / (dt * out)), cut_here = 1;
       }
-      w.scale[i] = 1;
-      const Real held = w.old_content[i] + dt * in;
-      if (out > 0 && dt * out > held * (1 + 1e-15)) w.scale[i] = std::max<Real>(0, held / (dt * out)), cut = true;
-    }
+      return cut_here;
+    }, loop_tile);
     if (!cut) return;
     for (auto& edge : w.edges) edge.flow *= w.scale[edge.flow > 0 ? edge.a : edge.b];
     for (auto& supply : w.supplies) {
@@ -534,20 +537,21 @@ void update_masses(const TransportInput& input, Contents& contents, Work& w, Tra
                    std::vector<ReleasedLiquid>& released) {
   const WettingModel& m = *input.model;
   const Real mass = m.liquid.density * input.dt;
-  for (std::size_t i = 0; i < w.active.size(); ++i) {
+  parallel_for(w.active.size(), [&](std::size_t i) {
     Real flow = 0;
     for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
       const auto& edge = w.edges[w.row_edge[k]];
       flow += edge.a == i ? edge.flow : -edge.flow;
     }
     contents.liquid_kg[w.active[i]] -= mass * flow;
-  }
+  }, loop_tile);
   w.supply_kg.assign(input.supplies.size(), 0);
   for (const auto& supply : w.supplies) {
     const Real taken = std::min(mass * supply.flow, std::max<Real>(0, input.available_kg[supply.supply]));
     contents.liquid_kg[w.active[supply.node]] += taken;
     w.supply_kg[supply.supply] = taken;
   }
+  Real moved = 0, all = 0;
   for (std::size_t i = 0; i < w.active.size(); ++i) {
     const Index node = w.active[i];
     Real& held = contents.liquid_kg[node];
@@ -560,10 +564,13 @@ void update_masses(const TransportInput& input, Contents& contents, Work& w, Tra
     }
     const Real after = held / (m.liquid.density * w.volume[i]);
     result.largest_change = std::max(result.largest_change, std::abs(after - w.old_saturation[i]));
+    moved += std::abs(after - w.old_saturation[i]) * w.volume[i];
+    all += std::max(after, w.old_saturation[i]) * w.volume[i];
     if (contents.reached_saturation.empty()) continue;
     Real& reached = contents.reached_saturation[node];
     reached = after < 1e-4 ? 0 : std::max(reached, after);
   }
+  result.moved_share = all > 0 ? moved / all : 0;
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ struct TransportResult {
   bool converged = false;
   int newton_iterations = 0, linear_iterations = 0;
   std::size_t active_nodes = 0;
-  Real largest_change = 0;
+  Real largest_change = 0;  // of a saturation
+  Real moved_share = 0;     // of the liquid in the network: what came to other nodes, in or out
 };
 
 // Node numbers of the solved set and everything that is computed on it. Reused between steps; never part of a state.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imbibe/core/error.h"
+#include "imbibe/wetting/evaporation.h"
 #include "imbibe/wetting/fibre_exchange.h"
 #include "imbibe/wetting/swelling.h"
 #include "imbibe/wetting/transport.h"
@@ -12,10 +13,11 @@ namespace {
 
 constexpr Real first_step = 1e-4;     // s
 constexpr Real longest_step = 300;    // s
-constexpr int easy_newton = 5;        // iterations of a step that may grow
-constexpr Real growth = 1.3;
-constexpr Real quiet_growth = 2;      // hardly anything moves
-constexpr Real quiet_change = 0.05;   // of saturation
+constexpr int easy_newton = 8;        // iterations of a step that may grow
+constexpr int hard_newton = 14;       // of one that should have been shorter
+constexpr Real moved_in_step = 0.05;   // share of the liquid that should change its node in one step
+constexpr Real growth = 3;            // the most from step to step
+constexpr Real dried_in_step = 0.02;  // saturation that evaporation, taken before transport, may cost a node in one step
 constexpr Real shrink = 0.3;
 constexpr int most_rejections = 30;   // one after the other: 0.3^30 of the step
 
@@ -49,24 +51,58 @@ void release_surplus(const WettingModel& m, Contents& contents, std::vector<Rele
   }
 }
 
+// The step follows what moves; Newton's method only says when it was too long.
 Real next_step(Real dt, const Substep& substep) {
-  const bool easy = substep.transport.newton_iterations <= easy_newton;
-  if (!easy) return substep.transport.newton_iterations > 2 * easy_newton ? 0.7 * dt : dt;
-  return dt * (substep.transport.largest_change < quiet_change ? quiet_growth : growth);
+  const TransportResult& t = substep.transport;
+  const Real wanted = t.moved_share > 0 ? std::clamp<Real>(moved_in_step / t.moved_share, 0.5, growth) : growth;
+  if (t.newton_iterations > hard_newton) return 0.5 * dt;
+  return dt * (t.newton_iterations > easy_newton ? std::min<Real>(1, wanted) : wanted);
+}
+
+// The longest step with liquid in the cloth. Evaporation is local and comes before transport: in longer steps a node
+// would run dry and stop giving off vapour while its neighbours could still feed it.
+Real longest_drying_step(const WettingModel& m, const Air& air) {
+  if (!m.params.evaporation) return longest_step;
+  const bool wet_bulb = m.params.surface_temperature == SurfaceTemperature::wet_bulb;
+  const Real rate = evaporation_rate(air, 1, wet_bulb ? wet_bulb_temperature(air) : air.temperature);
+  if (rate <= 0) return longest_step;
+  Real per_second = 0;
+  for (std::size_t s = 0; s < m.segments; ++s) {
+    if (m.volume[s] > 0) per_second = std::max(per_second, rate * m.vapour_area[s] / (m.liquid.density * m.volume[s]));
+  }
+  return per_second > 0 ? std::min(longest_step, dried_in_step / per_second) : longest_step;
 }
 
 }  // namespace
 
+struct WettingScratch::Parts {
+  TransportWorkspace work;
+  Contents saved;
+  std::vector<Real> available;
+};
+
+WettingScratch::WettingScratch() : parts(std::make_unique<Parts>()) {}
+WettingScratch::~WettingScratch() = default;
+WettingScratch::WettingScratch(WettingScratch&&) noexcept = default;
+WettingScratch& WettingScratch::operator=(WettingScratch&&) noexcept = default;
+
 WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
                            std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt) {
+  WettingScratch scratch;
+  return step_wetting(model, contents, supplies, taken_kg, air, gravity, dt, scratch);
+}
+
+WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
+                           std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt,
+                           WettingScratch& scratch) {
   IMBIBE_ASSERT(taken_kg.size() == supplies.size());
   WettingReport report;
   std::fill(taken_kg.begin(), taken_kg.end(), 0);
   report.suggested_step = dt;
   if (!(dt > 0)) return report;
-  std::vector<Real> available(supplies.size());
-  TransportWorkspace work;
-  Contents saved;
+  auto& [work, saved, available] = *scratch.parts;
+  available.assign(supplies.size(), 0);
+  const Real longest = longest_drying_step(model, air);
   Real step = dt;
   int rejected_in_a_row = 0;
   while (report.advanced_s < dt) {
@@ -101,7 +137,7 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
       taken_kg[i] += work.supply_kg[i];
       report.taken_kg += work.supply_kg[i];
     }
-    step = next_step(now, substep);
+    step = std::min(next_step(now, substep), substep.transport.active_nodes > 0 ? longest : longest_step);
     // A sliver at the end of dt says nothing about the step that would be right.
     if (!last || report.substeps == 1) report.suggested_step = step;
     report.advanced_s = last ? dt : report.advanced_s + now;
@@ -114,9 +150,9 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
 Real suggested_wetting_step(const WettingModel& model, const Contents& contents, const Air& air, const Vec3& gravity) {
   TransportWorkspace work;
   const TransportInput input{.model = &model, .supplies = {}, .available_kg = {}, .gravity = gravity, .dt = first_step};
-  (void)air;
   const Real rate = largest_saturation_rate(input, contents, work);
-  return std::clamp(rate > 0 ? 0.3 / rate : longest_step, first_step, longest_step);
+  if (work.active.empty()) return longest_step;
+  return std::clamp(rate > 0 ? 0.3 / rate : longest_step, first_step, longest_drying_step(model, air));
 }
 
 }  // namespace imbibe

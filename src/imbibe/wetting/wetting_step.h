@@ -7,6 +7,7 @@
 // Tested in tests/wetting/network_test.cpp, spreading_test.cpp and behaviour_test.cpp.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,11 +32,25 @@ struct WettingReport {
   int substeps = 0, rejected = 0;
   std::size_t active_nodes = 0; // most nodes in one solve
   Real largest_change = 0;      // of saturation in one substep
-  Real suggested_step = 0;      // s, for the next call
+  Real suggested_step = 0;      // s, for the next call: by what moves, what dries, and how hard it was to solve
+};
+
+// Memory of the solver, kept from step to step; never part of a state, the results do not depend on it. One for each
+// textile keeps the rows of the equations while the same nodes are wet.
+struct WettingScratch {
+  WettingScratch();
+  ~WettingScratch();
+  WettingScratch(WettingScratch&&) noexcept;
+  WettingScratch& operator=(WettingScratch&&) noexcept;
+  struct Parts;
+  std::unique_ptr<Parts> parts;
 };
 
 // Advances `contents` by dt. taken_kg[i] (same length as supplies) is set to what supply i gave, >= 0, or was given
 // back, < 0; it never exceeds available_kg. `gravity` in sheet coordinates, m/s2.
+WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
+                           std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt,
+                           WettingScratch& scratch);
 WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
                            std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt);
 
