@@ -26,8 +26,8 @@ Real poiseuille(Real y, Real t) {
   return u;
 }
 
-// A block of liquid, open at both ends in x, between two plates in y that hold it and two in z that do not. The ends
-// are 4 channel widths away; the flow moves by a quarter of a spacing, so they stay flat and have no pressure.
+// A block of liquid, open at both ends in x, between two plates in y that hold it and two in z that do not. The flow moves
+// by a quarter of a spacing, so the ends stay flat and have no pressure; measured one channel width and more from them.
 TEST(ChannelFlow, starts_up_like_plane_poiseuille_flow) {
   constexpr int cells_along = 32, cells_deep = 14;
   const Real depth = 0.5 * cells_deep * edge;
@@ -68,6 +68,8 @@ TEST(ChannelFlow, starts_up_like_plane_poiseuille_flow) {
     }
     std::printf("  t = %.1f h2/nu: middle %.3f of theory, deviation %.4f of the greatest speed\n", time / settled,
                 middle / theory, std::sqrt(square / count) / fastest);
+    // At 10 spacings across: 1.0 % at first, 4.4 % when steady (3.8 % at twice the depth: pairs are missing at the plates
+    // that let it slip). The rest is the viscosity of a lattice with few neighbours, too low by 4 to 5 %.
     EXPECT_LT(std::sqrt(square / count) / fastest, 0.05) << time / settled;
   }
 }

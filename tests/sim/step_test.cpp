@@ -30,6 +30,16 @@ TEST(Step, NoStepPassesOverADropsTimeAndMassIsSuppliedExactly) {
   EXPECT_NEAR(world.ledger.supplied_kg, 3e-9 * world.liquid.kind.density, 0.5 * world.liquid.particle_mass);
 }
 
+TEST(Step, ADropWhoseTimeIsARoundedSumMakesNoVanishingStep) {
+  World world = falling_drops(4, 0.1 / 3);
+  Real shortest = 1;
+  RunHooks hooks;
+  hooks.after_step = [&](const World&, const StepReport& report) { shortest = std::min(shortest, report.step_s); };
+  run(world, {.until = 0.11, .every = 0.01, .max_steps = 0, .step = {}}, hooks);
+  EXPECT_EQ(world.sources[0].emitted, 4);
+  EXPECT_GT(shortest, 1e-9);
+}
+
 TEST(Step, ParticlesOutsideTheDomainLeaveAndStayInTheBooks) {
   World world = falling_drops(1, 0);
   world.sources[0].velocity = {0, 0, -5};

@@ -19,6 +19,7 @@ namespace {
 constexpr Real interval_with_moving_liquid = 2e-3;           // s
 constexpr Real longest_interval_with_resting_liquid = 5e-2;  // s
 constexpr Real share_taken_before_moving = 0.02;             // of the particles that came to rest
+constexpr Real due_slack = 1e-9;                             // s, a drop this near is due: times are rounded sums
 constexpr Real force_averaging_time = 2e-3;                  // s, about ten SPH steps and more
 
 using Clock = std::chrono::steady_clock;
@@ -33,7 +34,7 @@ Real next_drop(const World& world) {
 void emit_sources(World& world, StepReport& report) {
   for (Source& source : world.sources) {
     // Only what is due now: later drops of the step have their own.
-    const EmitReport emitted = emit(source, world.liquid, world.time, std::nextafter(world.time, 1e300));
+    const EmitReport emitted = emit(source, world.liquid, world.time, world.time + due_slack);
     world.ledger.supplied_kg += emitted.kg;
     report.emitted += emitted.particles;
   }
@@ -257,7 +258,7 @@ Real textile_interval(const World& world, bool moving) {
 
 void emit_due(World& world) {
   StepReport report;
-  if (next_drop(world) <= world.time) emit_sources(world, report);
+  if (next_drop(world) < world.time + due_slack) emit_sources(world, report);
 }
 
 StepReport step(World& world, const StepOptions& options, StepScratch& scratch) {
@@ -266,10 +267,10 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
   const Real remaining = options.until - world.time;
   IMBIBE_ASSERT(remaining > 0);
   const Real longest = std::min(remaining, options.max_step);
-  if (next_drop(world) <= world.time) emit_sources(world, report);
+  if (next_drop(world) < world.time + due_slack) emit_sources(world, report);
   // A drop is born at its own time: no step passes over it. One that waits for its place tries again at every step.
   const Real drop_in = next_drop(world) - world.time;
-  const Real allowed = drop_in > 0 ? std::min(longest, drop_in) : longest;
+  const Real allowed = drop_in >= due_slack ? std::min(longest, drop_in) : longest;
 
   const bool moving = world.liquid.particles.size() > 0 && !pace.resting;
   if (moving) {
