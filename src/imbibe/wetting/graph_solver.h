@@ -5,8 +5,8 @@
 // Stops at `tolerance` times the right-hand side, or at `floor` absolute: with a relative test alone a system at rest
 // (right-hand side zero) would iterate on rounding. Blocks are fixed, sums are added tile by tile: the same bits for
 // any number of threads.
-// Newton: a saturation moves by at most 0.3, stays above 0 by shrinking, does not run to and fro, and lands at the kink s = 1 (where the slope
-// of p(s) jumps by two orders) before it crosses.
+// Damped Newton, the fallback of transport.cpp: a saturation moves by at most 0.3, stays above 0 by shrinking, does not
+// run to and fro, and lands at the kink s = 1 (where the slope of p(s) jumps by two orders) before it crosses.
 // Tested in tests/wetting/graph_solver_test.cpp against dense elimination.
 #pragma once
 

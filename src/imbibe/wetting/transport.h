@@ -5,6 +5,9 @@
 //   release  q = T max(p_i - P_open,i, 0) to the face, and what stands above s = 1 + delta when the step is done
 //
 // V_i m3 held at s = 1 (swelling counted), q_ij m3/s. The laws of q_ij: along_yarn.h, crossing.h, capillary.h, entry.h.
+// Newton's unknown is Y_i(s_i) = s_i + (dt/V_i) C_i u_i(s_i), each node's own side of its equation (C_i the sum of its
+// conductances, u_i its potential): saturation where storage rules, potential where flow does. In s alone full nodes
+// would halt one by one at the kink of p(s) at s = 1.
 // Only wet nodes, supplied nodes and their neighbours are solved; the set grows when liquid reaches its rim. The final
 // masses come from the flows, each computed once per edge, so they add up to rounding at any tolerance; a node that
 // this would leave below zero (by the tolerance) has its outflows cut to what it holds.
