@@ -152,7 +152,7 @@ TEST_F(BadInput, ADropFartherAwayThanSinglePrecisionPlacesItIsRefused) {
   text.replace(text.find("[0, 0, 5 mm]"), 12, "[0, 0, 1e300]");
   const Outcome outcome = run_command("check " + write("scene.yaml", text));
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.output.find(":8:21: error: liquid.drops[0].centre[2]: 1e300 is outside"), std::string::npos)
+  EXPECT_NE(outcome.output.find(":8:23: error: liquid.drops[0].centre[2]: 1e300 is outside"), std::string::npos)
       << outcome.output;
 }
 
