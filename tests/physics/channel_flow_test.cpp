@@ -69,7 +69,8 @@ TEST(ChannelFlow, starts_up_like_plane_poiseuille_flow) {
     std::printf("  t = %.1f h2/nu: middle %.3f of theory, deviation %.4f of the greatest speed\n", time / settled,
                 middle / theory, std::sqrt(square / count) / fastest);
     // At 10 spacings across: 1.0 % at first, 4.4 % when steady (3.8 % at twice the depth: pairs are missing at the plates
-    // that let it slip). The rest is the viscosity of a lattice with few neighbours, too low by 4 to 5 %.
+    // that let it slip). What makes the rest is not known; it does not fade with resolution: 6.3 % at 20 spacings across in
+    // a block that is only 3.5 half-widths deep and 6 long. So the bound is a regression bound, not a converged error.
     EXPECT_LT(std::sqrt(square / count) / fastest, 0.05) << time / settled;
   }
 }
