@@ -1,0 +1,33 @@
+// What flows now over every link, from every supply and to the faces: the laws of along_yarn.h, crossing.h, capillary.h
+// and entry.h applied to the solved set of transport.h. Each value comes with its slopes for Newton's method.
+// Tested through transport.h in tests/wetting/network_test.cpp.
+#pragma once
+
+#include "imbibe/wetting/transport.h"
+
+namespace imbibe {
+
+inline constexpr Real driest_wall = 1e-4;  // saturation whose corners wet the walls of a dry pore enough to begin
+inline constexpr std::size_t transport_tile = 1024;
+
+// The potential of a yarn's links at pressure p: Psi, or Kuenzel's Phi at the saturation the yarn would have.
+struct YarnPotential {
+  TransportModel model;
+  Real entry, size_index;
+  Sloped operator()(Real p) const {
+    if (model == TransportModel::physical) return kirchhoff_potential(entry, size_index, p);
+    if (p >= -entry) return {kunzel_potential(1).value, 0};
+    const Real s = std::pow(entry / -p, size_index);
+    const Sloped phi = kunzel_potential(s);
+    return {phi.value, phi.slope * size_index * s / -p};
+  }
+};
+
+// Pressures, potentials and releases of the nodes at work.saturation.
+void evaluate_nodes(const WettingModel& model, TransportWorkspace& work);
+// Flows of the links; needs the nodes.
+void evaluate_edges(const WettingModel& model, TransportWorkspace& work);
+// Flows from the faces, no more than is available; needs the nodes.
+void evaluate_supplies(const TransportInput& input, TransportWorkspace& work);
+
+}  // namespace imbibe
