@@ -69,9 +69,13 @@ Fabric build_named_fabric(const NamedFabric& named, const FibreLibrary& fibres) 
     return build_fabric(named.spec, fibres, named.key);
   } catch (const InputError& error) {
     std::vector<Problem> problems;
-    for (const Problem& problem : error.problems())
+    for (const Problem& problem : error.problems()) {
       problems.push_back(problem.file.empty() ? problem_at(place_of(named.places, problem.key), problem.key, problem.message)
                                               : problem);
+      if (!problems.back().file.empty() || !is_wif(named.spec.weave)) continue;
+      problems.back().file = named.spec.weave;  // the draft has no such key: it is given beside it
+      problems.back().message += fmt::format("; give it with --set {}=...", problem.key);
+    }
     throw InputError(std::move(problems));
   }
 }
