@@ -11,6 +11,7 @@
 struct CommandContext {
   int exit_code = 0;
   std::vector<std::string> data_folders;  // where fibres/, liquids/ and fabrics/ are looked for, in order
+  std::string program;                    // as typed: imbibe, or its launcher
   std::string command_line;               // to repeat the command, as typed
 };
 

@@ -21,9 +21,13 @@ std::vector<std::string> data_folders() {
   return folders;
 }
 
-std::string command_line(int count, char** words) {
+std::string program_name() {
   const char* launcher = std::getenv("IMBIBE_LAUNCHER");
-  std::string line = launcher ? launcher : "imbibe";
+  return launcher ? launcher : "imbibe";
+}
+
+std::string command_line(int count, char** words) {
+  std::string line = program_name();
   for (int i = 1; i < count; ++i) line += std::string(" ") + words[i];
   return line;
 }
@@ -36,6 +40,7 @@ int main(int count, char** words) {
   app.set_version_flag("--version", IMBIBE_VERSION);
   CommandContext context;
   context.data_folders = data_folders();
+  context.program = program_name();
   context.command_line = command_line(count, words);
   add_run_command(app, context);
   add_check_command(app, context);

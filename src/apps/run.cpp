@@ -79,10 +79,10 @@ Progress progress_of(const World& world, const StepReport& report, Real until, R
 class RunSession {
  public:
   RunSession(const RunArguments& arguments, const CommandContext& context)
-      : arguments_(arguments), scene_file_(arguments.scene) {
+      : arguments_(arguments), program_(context.program), scene_file_(arguments.scene) {
     if (arguments.resume && fs::is_directory(scene_file_)) folder_path_ = scene_file_, scene_file_ /= "scene.yaml";
     if (arguments.resume && folder_path_.empty() && arguments.output.empty())
-      throw InputError("--resume wants the folder of the run: imbibe run FOLDER --resume");
+      throw InputError("--resume wants the folder of the run: run FOLDER --resume");
     scene_ = read_scene(scene_file_, arguments.overrides);
     if (arguments.until > 0) scene_.duration = arguments.until;
     if (!arguments.output.empty()) folder_path_ = arguments.output;
@@ -229,7 +229,7 @@ class RunSession {
     std::printf("  film        %s\n", film.message.c_str());
     std::printf("  ParaView    %s (and textile_*.pvd)\n", (folder_path_ / "liquid.pvd").c_str());
     if (status == RunStatus::interrupted)
-      std::printf("  go on with  imbibe run %s --resume\n", folder_path_.c_str());
+      std::printf("  go on with  %s run %s --resume\n", program_.c_str(), folder_path_.c_str());
   }
 
   int fail(ProgressWriter& progress, const char* reason) {
@@ -248,6 +248,7 @@ class RunSession {
   }
 
   RunArguments arguments_;
+  std::string program_;
   fs::path scene_file_, folder_path_;
   Scene scene_;
   World world_;
