@@ -141,6 +141,14 @@ TEST_F(RunCommand, StopsAtItsLimitOfStepsWithAllKeptAndGoesOnWithAHigherOne) {
   EXPECT_EQ(hash("out"), hash("whole"));
 }
 
+TEST_F(RunCommand, EndsWithThreeWhenTheStepVanishesAndKeepsWhatWasWritten) {
+  const std::string said = run("out", "--no-pictures --set liquid.solver.capillary_factor=1e-13", 3);
+  EXPECT_NE(said.find("error: numerical failure at t = "), std::string::npos) << said;
+  EXPECT_EQ(run_json("out")["status"], "failed");
+  EXPECT_NE(std::string(run_json("out")["reason"]).find("the step fell to"), std::string::npos);
+  EXPECT_EQ(read_series(folder_ / "out" / "series.csv").rows(), 1u);
+}
+
 TEST_F(RunCommand, StopsWhenTheRunFolderOutgrowsItsLimit) {
   run("out", "--no-pictures --until 0.004");
   // Something else fills the folder: the estimate before the run cannot know.
