@@ -131,6 +131,7 @@ class RunSession {
     hooks.after_step = [&](const World& world, const StepReport& report) {
       liquid_s_ += report.liquid_wall_s, wetting_s_ += report.wetting_wall_s;
       moved_ += report.liquid_moved, wetted_ += report.wetting_ran;
+      contact_ += report.contact;
       peak_density_error_ = std::max(peak_density_error_, report.peak_density_error);
       progress.show(progress_of(world, report, plan.until, seconds_since(started_)));
       check_particles(world);
@@ -224,6 +225,12 @@ class RunSession {
                 static_cast<unsigned long long>(moved_), wetting_s_, static_cast<unsigned long long>(wetted_), output_s_);
     if (moved_ > 0)
       std::printf("  liquid      largest compression of a particle %.2g %%\n", 100 * peak_density_error_);
+    if (contact_.textile_boxes > 0)
+      std::printf("  contact     boxes tested: %llu of textiles, %llu of yarns, %llu of segments; %llu pieces, %llu triangles\n",
+                  static_cast<unsigned long long>(contact_.textile_boxes),
+                  static_cast<unsigned long long>(contact_.yarn_boxes),
+                  static_cast<unsigned long long>(contact_.segment_boxes),
+                  static_cast<unsigned long long>(contact_.pieces), static_cast<unsigned long long>(contact_.triangles));
     std::printf("  run folder  %s\n  report      %s\n", folder_path_.c_str(), report.c_str());
     if (pictures_) std::printf("  pictures    %s\n", (folder_path_ / "pictures").c_str());
     std::printf("  film        %s\n", film.message.c_str());
@@ -256,6 +263,7 @@ class RunSession {
   std::unique_ptr<RunPictures> pictures_;
   double liquid_s_ = 0, wetting_s_ = 0, output_s_ = 0, peak_density_error_ = 0;
   std::uint64_t moved_ = 0, wetted_ = 0;
+  ContactCounts contact_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_;
 };
 

@@ -116,6 +116,7 @@ void add_wetting(const Scene& scene, std::size_t i, World& world, std::vector<Pr
     textile.contents = conditioned_contents(*textile.model, world.air);
     const Real spacing = world.liquid.particle_mass > 0 ? world.liquid.spacing() : 0;
     textile.faces = std::make_shared<const FaceMap>(build_face_map(network, spacing));
+    textile.contact = scene.textiles[i].contact;
     textile.yarn_boxes = std::make_shared<const YarnContactIndex>(build_contact_index(network));
     textile.exchange.waiting_kg.assign(network.nodes(), 0);
   } catch (const InputError& error) {

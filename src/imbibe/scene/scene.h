@@ -13,6 +13,7 @@
 
 #include "imbibe/core/parameter.h"
 #include "imbibe/core/types.h"
+#include "imbibe/coupling/contact.h"
 #include "imbibe/fabric/fabric.h"
 #include "imbibe/geometry/shape_spec.h"
 #include "imbibe/liquid/liquid_step.h"
@@ -175,6 +176,7 @@ struct TextileSpec {
   std::optional<Real> receding_angle;  // rad
   SheetSpec sheet;
   WettingSpec wetting;
+  ContactParams contact;
 };
 
 template <class V>
@@ -193,6 +195,7 @@ void describe(V& v, TextileSpec& p) {
           {.unit = "rad", .shown = "deg", .min = 0, .max = pi, .help = "receding contact angle on every fibre"});
   v.group("sheet", p.sheet, "how the cloth is held");
   v.group("wetting", p.wetting, "how it takes liquid up");
+  v.group("contact", p.contact, "how particles that hit its yarns bounce");
 }
 
 struct SolidSpec {

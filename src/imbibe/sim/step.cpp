@@ -120,6 +120,7 @@ void bounce_off_yarns(World& world, StepScratch& scratch, StepReport& report) {
       ++textile.exchange.bounces;
     }
     report.hits += scratch.hits.size();
+    textile.exchange.contacts += scratch.hits.size();
   }
 }
 
