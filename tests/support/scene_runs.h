@@ -53,6 +53,6 @@ inline World build_small_drop(const std::vector<std::string>& overrides = {}) {
   return build(small_drop(overrides), scenes_folder() / "small_drop.yaml");
 }
 
-inline void run_until(World& world, Real until) { run(world, {.until = until}, {}); }
+inline void run_until(World& world, Real until) { run(world, {.until = until, .every = 0, .max_steps = 0, .step = {}}, {}); }
 
 }  // namespace imbibe::test
