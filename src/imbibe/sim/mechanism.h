@@ -1,5 +1,5 @@
 // Why the textiles of a world took liquid up, or did not: sentences for the report, made from the state and the model.
-// Nothing here decides anything. Tested in tests/sim/mechanism_test.cpp.
+// Nothing here decides anything. Tested in tests/physics/fig07_test.cpp.
 #pragma once
 
 #include <string>
