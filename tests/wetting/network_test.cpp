@@ -442,15 +442,19 @@ Real spread(const Stain& stain, Real degrees_from_x) {
   return std::sqrt(moment / mass);
 }
 
+// Diamonds: liquid runs ahead along yarns within l_c = pitch sqrt(T_along/T_crossing) of the front, 0.9 pitches at the
+// default factor 3 and 0.5 at 10, so the diagonal falls back by about l_c over the radius: 8 % at 12 pitches.
 TEST(Stain, IsIsotropicOnAPlainWeaveOfEqualYarns) {
-  WettingParams params = transport_only();
-  params.crossing_factor = 10;
-  const Stain stain = drop_on(paper_sheet(41, paper_yarn(cotton_fibre())), params, 5.2e-3, 60e-6, 6);
-  const Real weft = front(stain, 41, 1, 0), warp = front(stain, 41, 0, 1), diagonal = front(stain, 41, 1, 1);
-  EXPECT_GE(weft, 12);  // pitches
-  EXPECT_NEAR(warp / weft, 1, 0.05);
-  EXPECT_NEAR(diagonal / (0.5 * (warp + weft)), 1, 0.08);
-  RecordProperty("diagonal_over_axis", std::to_string(diagonal / (0.5 * (warp + weft))));
+  for (const Real factor : {10.0, WettingParams{}.crossing_factor}) {
+    WettingParams params = transport_only();
+    params.crossing_factor = factor;
+    const Stain stain = drop_on(paper_sheet(41, paper_yarn(cotton_fibre())), params, 5.2e-3, 60e-6, 6);
+    const Real weft = front(stain, 41, 1, 0), warp = front(stain, 41, 0, 1), diagonal = front(stain, 41, 1, 1);
+    EXPECT_GE(weft, 12);  // pitches
+    EXPECT_NEAR(warp / weft, 1, 0.05) << factor;
+    EXPECT_NEAR(diagonal / (0.5 * (warp + weft)), 1, 0.08) << factor;
+    RecordProperty("diagonal_over_axis", std::to_string(diagonal / (0.5 * (warp + weft))));
+  }
 }
 
 TEST(Stain, WithoutCrossingsAndPoresIsACross) {
