@@ -35,6 +35,7 @@ std::string scaled_text(Real value, const std::string& unit, int digits) {
   static constexpr std::array<Prefix, 3> areas{{{1, ""}, {1e-4, "c"}, {1e-6, "m"}}};
   const auto with = [&](const auto& prefixes, const std::string& base) {
     if (value == 0) return "0 " + base;
+    if (unit == "kg" && std::abs(value) < 1e-15) return "0 " + base;  // below a picogram: rounding of sums
     // Rounded before the prefix is chosen, so that 0.9999 does not become "1e+03 m".
     const Real rounded = std::stod(fmt::format("{:.{}g}", value, digits));
     const Prefix* best = &prefixes.back();

@@ -78,7 +78,9 @@ std::string tile(const std::string& name, const std::string& value, const std::s
 }
 
 std::string share_of(Real part, Real whole) {
-  return whole > 0 ? fmt::format("{:.1f} % of the liquid", 100 * part / whole) : "";
+  // Rounding of sums may leave -0.0: shown as zero.
+  const double percent = whole > 0 && std::abs(part) > 1e-12 * whole ? 100 * part / whole : 0;
+  return whole > 0 ? fmt::format("{:.1f} % of the liquid", percent) : "";
 }
 
 std::string key_figures(const RunRecord& r) {

@@ -38,8 +38,12 @@ std::vector<std::string> explain_uptake(const World& world) {
   std::vector<std::string> sentences;
   for (const Textile& textile : world.textiles) {
     std::string entry;
-    for (std::size_t type = 0; type < textile.fabric->network.yarn_types.size(); ++type)
-      entry += (type ? "; " : "") + entry_sentence(textile, type);
+    for (std::size_t type = 0; type < textile.fabric->network.yarn_types.size(); ++type) {
+      const std::string sentence = entry_sentence(textile, type);
+      if (entry.find(sentence) != std::string::npos) continue;  // warp and weft alike
+      if (!entry.empty()) entry += "; ";
+      entry += sentence;
+    }
     sentences.push_back(fmt::format("{}: {}. {}", textile.name, entry, pore_sentence(*textile.model)));
     const Real force = textile.exchange.normal_force;
     sentences.push_back(fmt::format(
