@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "imbibe/fabric/network.h"
+#include "imbibe/wetting/wetting_model.h"
 
 namespace imbibe::testing {
 
@@ -200,6 +201,15 @@ inline YarnNetwork shirting(std::size_t count, const YarnType& yarn) {
 }
 inline YarnNetwork paper_sheet(std::size_t count, const YarnType& yarn) {
   return plain_weave(count, count, 1e-3, 1e-3, yarn, yarn);
+}
+
+// Neither vapour nor sorption nor swelling.
+inline WettingParams transport_only() {
+  WettingParams p;
+  p.evaporation = false;
+  p.sorption = SorptionModel::none;
+  p.swelling = false;
+  return p;
 }
 
 }  // namespace imbibe::testing

@@ -90,7 +90,7 @@ TEST_F(PictureFiles, AnFfmpegThatDiesIsNoErrorEither) {
 }
 
 TEST_F(PictureFiles, FilmIsWrittenWhereFfmpegIs) {
-  if (!find_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  ASSERT_TRUE(find_ffmpeg()) << "apt-packages.txt names ffmpeg";
   const fs::path path = folder / "film with space; $(touch x).mp4";  // no shell reads it
   FilmWriter film(path, 25);
   for (int i = 0; i < 5; ++i) film.add(coloured(65, 37));  // odd sizes are padded

@@ -23,16 +23,9 @@ using testing::polyester_fibre;
 using testing::polypropylene_fibre;
 using testing::shirting;
 using testing::shirting_yarn;
+using testing::transport_only;
 using testing::wool_fibre;
 using testing::yarn_strip;
-
-WettingParams transport_only() {
-  WettingParams p;
-  p.evaporation = false;
-  p.sorption = SorptionModel::none;
-  p.swelling = false;
-  return p;
-}
 
 Real total_kg(const WettingModel& m, const Contents& c) {
   return total_sorbed_kg(m, c) + total_yarn_kg(m, c) + total_pore_kg(m, c);

@@ -16,16 +16,9 @@ using testing::polyester_fibre;
 using testing::polypropylene_fibre;
 using testing::shirting;
 using testing::shirting_yarn;
+using testing::transport_only;
 using testing::wool_fibre;
 using testing::yarn_strip;
-
-WettingParams transport_only() {
-  WettingParams p;
-  p.evaporation = false;
-  p.sorption = SorptionModel::none;
-  p.swelling = false;
-  return p;
-}
 
 TEST(Spreading, OfASlugFollowsBarenblattsExponent) {
   // Brooks-Corey makes D ~ s^m with m = 2 + 1/lambda; a slug on a line then has the half width ~ t^(1/(m + 2)).

@@ -1,5 +1,6 @@
 // Liquid that the textile gives back: it waits at its node until it makes a whole particle, which is then born at a
-// free place of the face near by, with the speed that the pressure there gives.
+// free place of the face near by. What opens a face leaves at its opening pressure, so the step gives no excess pressure
+// and the particle starts at rest; a caller that knows an excess gets release_speed().
 #pragma once
 
 #include "imbibe/coupling/exchange_state.h"
