@@ -10,6 +10,7 @@
 #include "imbibe/coupling/release.h"
 #include "imbibe/coupling/wet_wall.h"
 #include "imbibe/sim/measures.h"
+#include "imbibe/sim/rest.h"
 
 namespace imbibe {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 // than a particle. It cuts its own steps where it must (pores fill in some 0.3 ms at first).
 constexpr Real interval_with_moving_liquid = 2e-3;           // s
 constexpr Real longest_interval_with_resting_liquid = 5e-2;  // s
-constexpr Real share_taken_before_moving = 0.02;             // of the particles that came to rest
 constexpr Real due_slack = 1e-9;                             // s, a drop this near is due: times are rounded sums
 constexpr Real force_averaging_time = 2e-3;                  // s, about ten SPH steps and more
 
@@ -182,71 +182,6 @@ void leave(World& world, StepScratch& scratch, StepReport& report) {
   report.left = remove_particles(world.liquid.particles, scratch.dead);
 }
 
-// Sums over the particles that make centre, extents and mean velocity; and the greatest squared speed.
-struct Moments {
-  Vec3 first{}, second{}, velocity{};
-  Real fastest = 0;
-  Moments& operator+=(const Moments& o) {
-    fastest = std::max(fastest, o.fastest);
-    return first += o.first, second += o.second, velocity += o.velocity, *this;
-  }
-};
-
-// The liquid rests when its shape does: centre and extents have stayed within a twentieth of a particle spacing for half
-// the capillary time sqrt(rho R^3 / gamma) of a drop of all the liquid. Particle speeds are no measure: a resting drop
-// keeps a residual motion of 2-10 % of the capillary velocity inside. Falling, spreading, oscillating or running liquid
-// leaves the band; so does a drop from which the textile drinks fast.
-void judge_rest(World& world, const StepOptions& options) {
-  Pace& pace = world.pace;
-  const Particles& p = world.liquid.particles;
-  if (!options.rest_allowed || p.size() == 0) return;
-  const Moments sum = parallel_sum(p.size(), [&](std::size_t begin, std::size_t end) {
-    Moments m;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 x(p.position[i].x, p.position[i].y, p.position[i].z);
-      m.first += x;
-      m.second += Vec3{x.x * x.x, x.y * x.y, x.z * x.z};
-      const Vec3 u(p.velocity[i].x, p.velocity[i].y, p.velocity[i].z);
-      m.velocity += u;
-      m.fastest = std::max(m.fastest, squared_norm(u));
-    }
-    return m;
-  });
-  const auto n = static_cast<Real>(p.size());
-  const Vec3 centre = sum.first / n, square = sum.second / n, velocity = sum.velocity / n;
-  const auto spread = [](Real mean_square, Real mean) { return std::sqrt(std::max(mean_square - mean * mean, 0.0)); };
-  const Vec3 extent{spread(square.x, centre.x), spread(square.y, centre.y), spread(square.z, centre.z)};
-
-  const LiquidKind& kind = world.liquid.kind;
-  const Real radius = std::cbrt(3 * world.liquid.mass() / (4 * pi * kind.density));
-  const Real band = 0.05 * world.liquid.spacing();
-  if (pace.calm_since < 0 || norm(centre - pace.calm_centre) > band || norm(extent - pace.calm_extent) > band) {
-    pace.calm_since = world.time;
-    pace.calm_centre = centre;
-    pace.calm_extent = extent;
-    pace.calm_velocity = velocity;
-    return;
-  }
-  const Real window = 0.5 * std::sqrt(kind.density * radius * radius * radius / kind.surface_tension);
-  const Real waited = world.time - pace.calm_since;
-  if (waited < window) return;
-  // What has just been let go falls too little to leave the band, but gains g t; single fast particles are spray.
-  const Real gained = norm(velocity - pace.calm_velocity);
-  const Real capillary_speed = std::sqrt(kind.surface_tension / (kind.density * radius));
-  if (gained > 0.3 * norm(world.gravity) * waited + 1e-3 * capillary_speed) return;
-  if (sum.fastest > 4 * capillary_speed * capillary_speed) return;
-  pace.resting = true;
-  pace.particles_at_rest = p.size();
-}
-
-void wake_when_changed(World& world) {
-  Pace& pace = world.pace;
-  const Real gone = static_cast<Real>(pace.particles_at_rest) - static_cast<Real>(world.liquid.particles.size());
-  if (gone <= share_taken_before_moving * static_cast<Real>(pace.particles_at_rest) && gone >= 0) return;
-  pace.resting = false;
-  pace.calm_since = -1;
-}
-
 // The step of the textiles that the liquid above allows.
 Real textile_interval(const World& world, bool moving) {
   if (moving) return interval_with_moving_liquid;
@@ -284,7 +219,7 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     if (!world.textiles.empty() && pace.since_wetting >= interval * (1 - 1e-9))
       exchange_all(world, pace.since_wetting, scratch, report);
     leave(world, scratch, report);
-    judge_rest(world, options);
+    if (options.rest_allowed) judge_rest(world, scratch.liquid.fields);
   } else {
     if (pace.since_wetting > 0 && !world.textiles.empty()) exchange_all(world, pace.since_wetting, scratch, report);
     report.step_s = world.textiles.empty() ? allowed : std::min(allowed, textile_interval(world, false));
