@@ -1,64 +1,132 @@
-// Cost of a liquid step by stage: drops with surface tension falling on a plate, and on a sheet.
-// Milliseconds per step of each stage are counters; run with one and two threads.
-#include <benchmark/benchmark.h>
+// Whole steps of the liquid, with a row for each stage.
+//   dam_break   the peers' scene: a cube of particles, spacing 5 cm, 5 cm over the floor of a tank; no surface tension;
+//               density error 0.05 %, divergence error 0.1 %. The tank is a closed mesh solid (open at the top).
+//   impact      1.64 mL of water, just above a plate at 0.3 m/s, with surface tension and contact angle (fig. 7)
+#include <cmath>
 
-#include "imbibe/core/parallel.h"
+#include "bench.h"
+#include "imbibe/geometry/mesh_distance.h"
 #include "imbibe/liquid/liquid_step.h"
 #include "imbibe/liquid/source.h"
 
+namespace imbibe::bench {
 namespace {
 
-using namespace imbibe;
+// A tank of inner size `inner` standing on z = 0 with its inner corner at the origin, walls of `wall` thickness.
+TriangleMesh tank_mesh(const Vec3& inner, Real wall) {
+  TriangleMesh mesh;
+  const auto box = [&](const Vec3& low, const Vec3& high) {
+    for (int k = 0; k < 8; ++k) {
+      mesh.vertices.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
+    }
+  };
+  box({-wall, -wall, -wall}, inner + Vec3{wall, wall, 0});  // 0-7 outside
+  box({0, 0, 0}, inner);                                    // 8-15 inside
+  const auto quad = [&](Index a, Index b, Index c, Index d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  quad(0, 2, 3, 1), quad(0, 1, 5, 4), quad(1, 3, 7, 5), quad(3, 2, 6, 7), quad(2, 0, 4, 6);             // outside
+  quad(8, 9, 11, 10), quad(8, 12, 13, 9), quad(9, 13, 15, 11), quad(11, 15, 14, 10), quad(10, 14, 12, 8);  // inside
+  quad(4, 5, 13, 12), quad(5, 7, 15, 13), quad(7, 6, 14, 15), quad(6, 4, 12, 14);                       // rim
+  return mesh;
+}
 
-// One drop of about `particles` particles, 1.64 mL as in seed A's figure 7, just above the plate at 0.3 m/s.
-Liquid drop_of(std::int64_t particles) {
+struct LiquidScene {
   Liquid liquid;
-  const Real volume = 1.64e-6, radius = std::cbrt(3 * volume / (4 * pi));
-  liquid.particle_mass = liquid.kind.density * volume / static_cast<Real>(particles);
-  Source source{.centre = {0, 0, radius + liquid.spacing()}, .volume = volume, .velocity = {0, 0, -0.3}};
-  emit(source, liquid, 0, 1);
-  return liquid;
+  LiquidParams params;
+  std::vector<Shape> shapes;
+  std::vector<Wall> walls;
+  bool sheet = false;
+  LiquidScratch scratch;
+  double held = 0;
+
+  LiquidStepReport step(Liquid& state) {
+    walls.clear();
+    for (const Shape& shape : shapes) walls.push_back({&shape, {.contact_angle = radians(70)}, {}, sheet});
+    return step_liquid(state, params, walls, {0, 0, -9.81}, 1, scratch);
+  }
+};
+
+LiquidScene dam_break(std::int64_t size) {
+  LiquidScene scene;
+  const double before = allocated_bytes();
+  const auto side = static_cast<int>(std::lround(std::cbrt(static_cast<double>(size))));
+  const Real dx = 0.05, edge = side * dx;
+  scene.liquid.particle_mass = scene.liquid.kind.density * dx * dx * dx;
+  scene.params.surface_tension = false;
+  scene.params.max_density_error = 5e-4;
+  scene.params.pressure.tolerance = 1e-3;
+  for (int k = 0; k < side; ++k) {
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        add_particle(scene.liquid, dx * Vec3{i + 0.5, j + 0.5, k + 0.5} + Vec3{0, 0, dx}, {});
+      }
+    }
+  }
+  scene.shapes.emplace_back(std::make_shared<const MeshDistance>(tank_mesh({3 * edge, edge, 2 * edge}, 4 * dx)));
+  const int steps = size > 500'000 ? 10 : 40;  // the front runs
+  for (int k = 0; k < steps; ++k) scene.step(scene.liquid);
+  scene.held = (allocated_bytes() - before) / static_cast<double>(size);
+  return scene;
 }
 
-void liquid_step(benchmark::State& state) {
-  const ThreadLimit limit(static_cast<int>(state.range(1)));
-  Liquid liquid = drop_of(state.range(0));
-  const Shape plate = Box{{0, 0, -0.5e-3}, {60e-3, 60e-3, 1e-3}};
-  const Wall wall{&plate, {.contact_angle = radians(70)}, {}, state.range(2) != 0};
-  LiquidScratch scratch;
-  const auto step = [&] { return step_liquid(liquid, {}, {&wall, 1}, {0, 0, -9.81}, 1, scratch); };
-  for (int k = 0; k < 20; ++k) step();
-  LiquidStepReport::Times sum;
-  double pressure = 0, correction = 0, steps = 0;
-  for (auto _ : state) {
-    const LiquidStepReport r = step();
-    sum.sort += r.times.sort, sum.walls += r.times.walls, sum.lists += r.times.lists;
-    sum.density += r.times.density, sum.viscosity += r.times.viscosity, sum.surface += r.times.surface;
-    sum.pressure += r.times.pressure, sum.move += r.times.move;
-    pressure += r.pressure_iterations, correction += r.divergence_iterations, ++steps;
-  }
-  const auto ms = [&](double seconds) { return benchmark::Counter(1e3 * seconds / steps); };
-  state.counters["sort"] = ms(sum.sort);
-  state.counters["walls"] = ms(sum.walls);
-  state.counters["lists"] = ms(sum.lists);
-  state.counters["density"] = ms(sum.density);
-  state.counters["viscosity"] = ms(sum.viscosity);
-  state.counters["surface"] = ms(sum.surface);
-  state.counters["pressure"] = ms(sum.pressure);
-  state.counters["move"] = ms(sum.move);
-  state.counters["iterations"] = pressure / steps;
-  state.counters["corrections"] = correction / steps;
-  state.counters["per_particle"] = benchmark::Counter(
-      static_cast<double>(liquid.particles.size()) * steps,
-      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+LiquidScene impact(std::int64_t size) {
+  LiquidScene scene;
+  const double before = allocated_bytes();
+  const Real volume = 1.64e-6, radius = std::cbrt(3 * volume / (4 * pi));
+  scene.liquid.particle_mass = scene.liquid.kind.density * volume / static_cast<Real>(size);
+  Source source;
+  source.centre = {0, 0, radius + scene.liquid.spacing()};
+  source.volume = volume;
+  source.velocity = {0, 0, -0.3};
+  emit(source, scene.liquid, 0, 1);
+  scene.shapes.emplace_back(Box{{0, 0, -0.5e-3}, {60e-3, 60e-3, 1e-3}});
+  const int steps = size > 500'000 ? 10 : 25;
+  for (int k = 0; k < steps; ++k) scene.step(scene.liquid);
+  scene.held = (allocated_bytes() - before) / static_cast<double>(size);
+  return scene;
 }
-BENCHMARK(liquid_step)
-    ->ArgNames({"particles", "threads", "sheet"})
-    ->Args({8000, 1, 0})
-    ->Args({8000, 2, 0})
-    ->Args({8000, 2, 1})
-    ->Args({80000, 2, 0})
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+
+struct DamBreak : LiquidScene {};
+struct Impact : LiquidScene {};
+
+void run_steps(benchmark::State& state, LiquidScene& scene, std::int64_t size) {
+  Liquid liquid = scene.liquid;
+  LiquidStepReport::Times sum;
+  double pressure = 0, correction = 0, steps = 0, error = 0, compression = 0;
+  for (auto _ : state) {
+    const LiquidStepReport r = scene.step(liquid);
+    sum.sort += r.times.sort, sum.walls += r.times.walls, sum.lists += r.times.lists, sum.density += r.times.density;
+    sum.viscosity += r.times.viscosity, sum.surface += r.times.surface, sum.pressure += r.times.pressure;
+    sum.move += r.times.move;
+    pressure += r.pressure_iterations, correction += r.divergence_iterations, ++steps;
+    error += r.remaining_density_error, compression += r.divergence_error;
+  }
+  report(state, {.items = static_cast<double>(size), .held_bytes_per_item = scene.held});
+  const auto stage = [&](const char* name, double seconds) { report_stage(state, name, seconds / steps); };
+  stage("sort", sum.sort), stage("walls", sum.walls), stage("lists", sum.lists), stage("density", sum.density);
+  stage("viscosity", sum.viscosity), stage("surface", sum.surface), stage("pressure", sum.pressure);
+  stage("move", sum.move);
+  report_extra(state, "pressure_iterations", pressure / steps);
+  report_extra(state, "density_iterations", correction / steps);
+  report_extra(state, "density_error_percent", 100 * error / steps);
+  report_extra(state, "divergence_error_percent", 100 * compression / steps);
+}
+
+std::int64_t passes(std::int64_t size) { return size <= 10'000 ? 40 : size <= 200'000 ? 10 : 3; }
 
 }  // namespace
+
+void add_liquid_benchmarks(const BenchOptions& options) {
+  add_family(options, "liquid/dam_break", {8000, 97'336, 1'000'000}, passes,
+             [](benchmark::State& state, std::int64_t size) {
+               run_steps(state, shared_fixture<DamBreak>(size, [&] { return DamBreak{dam_break(size)}; }), size);
+             });
+  add_family(options, "liquid/impact", {8000, 80'000, 1'000'000}, passes,
+             [](benchmark::State& state, std::int64_t size) {
+               run_steps(state, shared_fixture<Impact>(size, [&] { return Impact{impact(size)}; }), size);
+             });
+}
+
+}  // namespace imbibe::bench

@@ -1,0 +1,49 @@
+#include "textile_world.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "imbibe/scene/builder.h"
+#include "imbibe/scene/library.h"
+#include "imbibe/scene/scene.h"
+
+namespace imbibe::bench {
+
+World cloth_world(std::int64_t nodes, const std::string& liquid) {
+  const double side = std::sqrt(static_cast<double>(nodes) / 3) / 3000;  // m; 30 yarns per cm, 3 nodes per crossing
+  const std::string text = fmt::format(R"(version: 1
+title: bench
+duration: 1 s
+liquid:
+  kind: water
+{}
+textiles:
+  - name: cloth
+    size: [{:.9g} m, {:.9g} m]
+    weave: plain
+    warp: {{fibre: cotton, linear_density: 20 tex, density: 30 /cm}}
+    weft: {{fibre: cotton, linear_density: 20 tex, density: 30 /cm}}
+limits: {{max_particles: 1e8, max_memory: 20 GB}}
+)",
+                                       liquid.empty() ? "  particle_mass: 0.1 mg" : liquid, side, side);
+  const Scene scene = read_scene_text(text, "bench.yaml");
+  std::vector<std::string> data;
+  if (const char* folder = std::getenv("IMBIBE_DATA_DIR")) data.emplace_back(folder);
+  return build_world(scene, read_library(library_folders("bench.yaml", data)));
+}
+
+void wet(Textile& textile) {
+  const WettingModel& m = *textile.model;
+  const Real distance = 20e-3;  // m, of the stains' centres
+  for (std::size_t i = 0; i < m.nodes(); ++i) {
+    const Vec3& c = m.centre[i];
+    const Real x = std::remainder(c.x, distance), y = std::remainder(c.y, distance);
+    const Real share = 1 - std::hypot(x, y) / (0.4 * distance);
+    const Real s = share <= 0 ? 0 : std::min(0.9, 1.5 * share);
+    textile.contents.liquid_kg[i] = s * m.volume[i] * m.liquid.density;
+  }
+}
+
+}  // namespace imbibe::bench
