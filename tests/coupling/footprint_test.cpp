@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "imbibe/coupling/absorption.h"
-#include "imbibe/coupling/release.h"
 #include "support/woven.h"
 
 namespace imbibe {
@@ -168,34 +167,6 @@ TEST(Absorption, MassThatWaitsOnTheFaceIsTakenBackFirst) {
   book_taken(s.footprint, taken, s.liquid.particles, s.exchange);
   EXPECT_NEAR(s.exchange.waiting_kg[node], 0, 1e-12 * mass);
   EXPECT_NEAR(s.owed(), 0.05 * mass, 1e-12 * mass);
-}
-
-TEST(Release, WaitingMassBecomesParticlesBelowTheSheetAndNothingIsRounded) {
-  Scene s;
-  const Index node = s.map.node[s.map.node.size() / 2];
-  s.exchange.waiting_kg[node] = 1.25 * s.liquid.particle_mass;
-  const ReleaseReport report =
-      release_particles(s.fabric.network, s.placement, s.map, {}, {0, 0, -9.81}, s.exchange, s.liquid);
-  ASSERT_EQ(report.particles, 1u);
-  const Real waiting = std::accumulate(s.exchange.waiting_kg.begin(), s.exchange.waiting_kg.end(), 0.0);
-  EXPECT_NEAR(waiting, 0.25 * s.liquid.particle_mass, 1e-13 * s.liquid.particle_mass);
-  EXPECT_LT(s.liquid.particles.position[0].z, -0.5 * s.fabric.network.thickness);
-}
-
-TEST(Release, NoParticleIsBornInsideAnother) {
-  Scene s;
-  const Index node = s.map.node[s.map.node.size() / 2];
-  s.exchange.waiting_kg[node] = 5 * s.liquid.particle_mass;
-  release_particles(s.fabric.network, s.placement, s.map, {}, {0, 0, -9.81}, s.exchange, s.liquid);
-  const ReleaseReport again =
-      release_particles(s.fabric.network, s.placement, s.map, {}, {0, 0, -9.81}, s.exchange, s.liquid);
-  EXPECT_EQ(again.particles, 0u);  // the place is taken
-  EXPECT_EQ(s.liquid.particles.size(), 1u);
-}
-
-TEST(Release, SpeedIsTorricellis) {
-  EXPECT_NEAR(release_speed(100, 998.2), std::sqrt(200 / 998.2), 1e-12);
-  EXPECT_EQ(release_speed(-1, 998.2), 0);
 }
 
 }  // namespace

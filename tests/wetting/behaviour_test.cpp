@@ -80,6 +80,26 @@ TEST(Release, AnOverFullPoreGivesOffWhatStandsAboveItsOpeningPressure) {
   EXPECT_LE(node_pressure(m, c, pore), m.open[pore] * (1 + 1e-6));
 }
 
+TEST(Release, SaysByHowMuchThePressureAtTheLowerFaceIsAboveTheOpeningAndHowFastLiquidComes) {
+  WettingParams params;
+  params.evaporation = false;
+  params.sorption = SorptionModel::none;
+  const WettingModel m = build_wetting_model(shirting(5, shirting_yarn(wool_fibre(100))), params, {});
+  const std::size_t pore = m.segments + 5;
+  for (const Real gravity : {0.0, -9.81, 9.81}) {
+    Contents c = conditioned_contents(m, Air{});
+    c.liquid_kg[pore] = 1.21 * m.liquid.density * m.volume[pore];
+    const WettingReport report = step_wetting(m, c, {}, {}, Air{}, {0, 0, gravity}, 1e-5);
+    ASSERT_EQ(report.released.size(), 1u);
+    const Real head = m.liquid.density * std::abs(gravity) * 0.5 * m.thickness;
+    const Real at_start = filling_pressure(m, pore, 1.21).value + head - m.open[pore];
+    EXPECT_GT(report.released[0].excess_pressure, 0);
+    EXPECT_LT(report.released[0].excess_pressure, at_start);
+    EXPECT_NEAR(report.released[0].flow, m.release_conductance[pore] * report.released[0].excess_pressure,
+                1e-12 * report.released[0].flow);
+  }
+}
+
 TEST(Supply, LiquidGoesBackWhereThePressureAboveIsLower) {
   WettingParams params;
   params.evaporation = false;

@@ -5,13 +5,50 @@
 namespace imbibe {
 namespace {
 
-bool is_free(const Particles& particles, const Vec3& place, Real clearance) {
-  for (const Float4& x : particles.position) {
-    const Vec3 d(x.x - place.x, x.y - place.y, x.z - place.z);
-    if (squared_norm(d) < clearance * clearance) return false;
+constexpr Real clear_spacings = 0.8;  // no particle is born nearer to another
+
+// The particles beside the two faces, in sheet coordinates, by the bins of the face map.
+class NearFaces {
+ public:
+  NearFaces(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map)
+      : map_(map), clearance_(clear_spacings * liquid.spacing()) {
+    const Real reach = 0.5 * network.thickness + 2 * liquid.spacing();
+    for (const Float4& x : liquid.particles.position) {
+      const Vec3 p = placement.to_sheet({x.x, x.y, x.z});
+      if (std::abs(p.z) <= reach) places_.push_back({bin_of(p.x, p.y), p});
+    }
+    std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.bin < b.bin; });
   }
-  return true;
-}
+  bool is_free(const Vec3& at) const {
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        const long bin = bin_of(at.x + i * map_.bin, at.y + j * map_.bin);
+        for (auto place = first_of(bin); place != places_.end() && place->bin == bin; ++place)
+          if (squared_norm(place->at - at) < clearance_ * clearance_) return false;
+      }
+    return true;
+  }
+  void add(const Vec3& at) {
+    const long bin = bin_of(at.x, at.y);
+    places_.insert(first_of(bin), {bin, at});
+  }
+
+ private:
+  struct Place {
+    long bin;
+    Vec3 at;
+  };
+  long bin_of(Real x, Real y) const {
+    return static_cast<long>(std::floor((y - map_.y0) / map_.bin)) * (map_.bins_x + 4L) +
+           static_cast<long>(std::floor((x - map_.x0) / map_.bin));
+  }
+  std::vector<Place>::const_iterator first_of(long bin) const {
+    return std::lower_bound(places_.begin(), places_.end(), bin, [](const Place& p, long b) { return p.bin < b; });
+  }
+  const FaceMap& map_;
+  Real clearance_;
+  std::vector<Place> places_;
+};
 
 // Waiting mass of the nodes within reach of `centre`.
 Real waiting_near(const FaceMap& map, const Vec3& centre, const ExchangeState& exchange) {
@@ -20,38 +57,64 @@ Real waiting_near(const FaceMap& map, const Vec3& centre, const ExchangeState& e
   return sum;
 }
 
-// Takes `kg` from the nodes near `centre`, each giving the same share of what it has.
-void take_near(const FaceMap& map, const Vec3& centre, Real kg, Real present, ExchangeState& exchange) {
-  map.near(centre.x, centre.y, [&](Index k) { exchange.waiting_kg[k] -= exchange.waiting_kg[k] * (kg / present); });
+// Takes `share` of what waits and moves at the nodes near `centre`; returns the momentum taken.
+Real take_near(const FaceMap& map, const Vec3& centre, Real share, std::vector<Real>& momentum, ExchangeState& exchange) {
+  Real taken = 0;
+  map.near(centre.x, centre.y, [&](Index k) {
+    exchange.waiting_kg[k] -= share * exchange.waiting_kg[k];
+    taken += share * momentum[k];
+    momentum[k] -= share * momentum[k];
+  });
+  return taken;
 }
 
 }  // namespace
 
-Real release_speed(Real excess_pressure, Real density) {
-  return excess_pressure > 0 ? std::sqrt(2 * excess_pressure / density) : 0;
+Real release_speed(Real excess_pressure, Real density, Real flow, Real mouth_area) {
+  if (!(excess_pressure > 0) || !(flow > 0) || !(mouth_area > 0)) return 0;
+  return std::min(std::sqrt(2 * excess_pressure / density), flow / mouth_area);
+}
+
+Real mouth_area(const YarnNetwork& network, Index node) {
+  const std::size_t segments = network.segments();
+  if (node >= segments) return network.pore_opening_x[node - segments] * network.pore_opening_y[node - segments];
+  return pi * network.type_of_segment(node).radius * network.segment_length[node];
 }
 
 ReleaseReport release_particles(const YarnNetwork& network, const Placement& placement, const FaceMap& map,
-                                std::span<const Real> excess_pressure, const Vec3& gravity, ExchangeState& exchange,
-                                Liquid& liquid) {
+                                std::span<const ReleasedLiquid> released, const Vec3& gravity, const SolidAt& solid_at,
+                                ExchangeState& exchange, Liquid& liquid) {
   ReleaseReport report;
-  std::vector<Index> full;  // nodes with anything waiting, most first
+  for (const ReleasedLiquid& r : released) exchange.waiting_kg[r.node] += r.kg;
+  const Real mass = liquid.particle_mass, dx = liquid.spacing(), density = liquid.kind.density;
+  std::vector<Index> full;  // nodes about which a particle's mass waits, most first
   for (Index k = 0; k < exchange.waiting_kg.size(); ++k)
-    if (exchange.waiting_kg[k] > 0) full.push_back(k);
+    if (exchange.waiting_kg[k] > 0 && waiting_near(map, network.node_centre(k), exchange) >= mass) full.push_back(k);
+  if (full.empty()) return report;
   std::stable_sort(full.begin(), full.end(),
                    [&](Index a, Index b) { return exchange.waiting_kg[a] > exchange.waiting_kg[b]; });
-  const Real mass = liquid.particle_mass, dx = liquid.spacing();
-  const Real side = dot(gravity, placement.n) > 0 ? 1 : -1;  // the lower face
+  // What leaves now has its speed; the greatest excess says whether the other face opens too.
+  std::vector<Real> momentum(exchange.waiting_kg.size(), 0), excess(exchange.waiting_kg.size(), 0);
+  for (const ReleasedLiquid& r : released) {
+    momentum[r.node] += r.kg * release_speed(r.excess_pressure, density, r.flow, mouth_area(network, r.node));
+    excess[r.node] = std::max(excess[r.node], r.excess_pressure);
+  }
+  NearFaces near(liquid, network, placement, map);
+  const Real lower = dot(gravity, placement.n) > 0 ? 1 : -1;
+  const Real across = density * std::abs(dot(gravity, placement.n)) * network.thickness;  // Pa, from face to face
   for (const Index k : full) {
     const Vec3& centre = network.node_centre(k);
     const Real present = waiting_near(map, centre, exchange);
     if (present < mass) continue;
-    const Vec3 place = placement.to_world({centre.x, centre.y, side * (0.5 * network.thickness + 0.5 * dx)});
-    if (!is_free(liquid.particles, place, 0.8 * dx)) continue;
-    const Real speed = excess_pressure.empty() ? 0 : release_speed(excess_pressure[k], liquid.kind.density);
-    const Vec3 velocity = (side * speed) * placement.n;
-    add_particle(liquid, place, velocity);
-    take_near(map, centre, mass, present, exchange);
+    const auto place_at = [&](Real side) { return Vec3{centre.x, centre.y, side * (0.5 * network.thickness + 0.5 * dx)}; };
+    Real side = lower;
+    const bool closed = solid_at && solid_at(placement.to_world(place_at(side)));
+    if (closed || (!near.is_free(place_at(side)) && excess[k] >= across)) side = -side;
+    const Vec3 place = place_at(side), world = placement.to_world(place);
+    if (!near.is_free(place) || (side != lower && solid_at && solid_at(world))) continue;
+    const Vec3 velocity = (side * take_near(map, centre, mass / present, momentum, exchange) / mass) * placement.n;
+    add_particle(liquid, world, velocity);
+    near.add(place);
     ++report.particles;
     report.kg += mass;
     report.momentum += mass * velocity;

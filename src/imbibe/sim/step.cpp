@@ -124,6 +124,22 @@ void bounce_off_yarns(World& world, StepScratch& scratch, StepReport& report) {
   }
 }
 
+// Whether a particle at `place` would be in a solid, or in another textile than `textile`.
+bool solid_at(const World& world, std::size_t textile, const Vec3& place) {
+  const Real room = 0.25 * world.liquid.spacing();
+  for (const SolidBody& solid : world.solids)
+    if (nearest_surface(solid.shape, place).distance < room) return true;
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    if (t == textile) continue;
+    const YarnNetwork& network = world.textiles[t].fabric->network;
+    const Vec3 p = world.textiles[t].placement.to_sheet(place);
+    if (std::abs(p.z) < 0.5 * network.thickness + room && std::abs(p.x) < 0.5 * network.size_x &&
+        std::abs(p.y) < 0.5 * network.size_y)
+      return true;
+  }
+  return false;
+}
+
 // Textile step of dt: supply by the liquid on the faces, the network, then whole particles die or are born.
 void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, StepReport& report, Real& next_interval) {
   Textile& textile = world.textiles[index];
@@ -147,9 +163,9 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   scratch.dead.assign(world.liquid.particles.size(), 0);
   report.absorbed += absorb_particles(world.liquid, footprint, textile.exchange, scratch.dead).particles;
   remove_particles(world.liquid.particles, scratch.dead);
-  for (const auto& [node, kg] : wetting.released) textile.exchange.waiting_kg[node] += kg;
-  const ReleaseReport released = release_particles(network, textile.placement, *textile.faces, {}, world.gravity,
-                                                   textile.exchange, world.liquid);
+  const ReleaseReport released =
+      release_particles(network, textile.placement, *textile.faces, wetting.released, world.gravity,
+                        [&](const Vec3& place) { return solid_at(world, index, place); }, textile.exchange, world.liquid);
   report.released += released.particles;
   if (released.particles > 0) world.pace.resting = false;
   if (index < scratch.saturation.size())

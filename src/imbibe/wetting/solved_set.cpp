@@ -33,6 +33,12 @@ Real effective_entry(const WettingModel& m, const Work& w, Index local) {
   return -w.pressure[local] * std::pow(s, 1 / m.size_index[node]);
 }
 
+// The weight of the column from a node down to the lower of its faces, Pa.
+Real face_head(const WettingModel& m, Index node, const Vec3& gravity) {
+  const Real half = 0.5 * m.thickness, z = m.centre[node].z;
+  return m.liquid.density * std::max(gravity.z * (half - z), gravity.z * (-half - z));
+}
+
 // What the links of a node make of its potential (own_side).
 void gather_own_sides(const TransportInput& input, Work& w) {
   const WettingModel& m = *input.model;
@@ -145,7 +151,7 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
   build_rows(m, w);
   const std::size_t n = w.active.size();
   for (auto* vector : {&w.volume, &w.old_content, &w.old_saturation, &w.saturation, &w.pressure, &w.pressure_slope,
-                       &w.potential, &w.potential_slope, &w.release, &w.release_slope, &w.residual, &w.change,
+                       &w.potential, &w.potential_slope, &w.face_head, &w.release, &w.release_slope, &w.residual, &w.change,
                        &w.reached, &w.scale, &w.own_share, &w.own_entry}) {
     vector->assign(n, 0);
   }
@@ -156,6 +162,7 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
     w.old_saturation[i] = w.old_content[i] / w.volume[i];
     w.saturation[i] = w.old_saturation[i];
     w.reached[i] = contents.reached_saturation.empty() ? 0 : contents.reached_saturation[node];
+    w.face_head[i] = face_head(m, node, input.gravity);
   }, transport_tile);
   evaluate_nodes(m, w);
   const bool kunzel = m.params.model == TransportModel::kunzel;

@@ -193,7 +193,8 @@ void update_masses(const TransportInput& input, Contents& contents, Work& w, Tra
     if (surplus > 0) {
       const Real kg = std::min(surplus, held);
       held -= kg;
-      released.push_back({node, kg});
+      const Real excess = std::max<Real>(0, w.pressure[i] + w.face_head[i] - m.open[node]);
+      released.push_back({node, kg, excess, w.release[i]});
     }
     const Real after = held / (m.liquid.density * w.volume[i]);
     result.largest_change = std::max(result.largest_change, std::abs(after - w.old_saturation[i]));

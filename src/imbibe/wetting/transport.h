@@ -2,7 +2,8 @@
 //
 //   V_i (s_i - s_i^n) + dt [sum_j q_ij - q_supply,i + q_release,i] = 0,   |residual| <= 1e-9 V_i
 //   supply   inflow_i dt = min(law_i(s_i) dt, available_i)                (complementarity, inside the residual)
-//   release  q = T max(p_i - P_open,i, 0) to the face, and what stands above s = 1 + delta when the step is done
+//   release  q = T max(p_i + rho |g_n| z - P_open,i, 0) to the face that is lower, z m below the node; and what stands
+//            above s = 1 + delta when the step is done
 //
 // V_i m3 held at s = 1 (swelling counted), q_ij m3/s. The laws of q_ij: along_yarn.h, crossing.h, capillary.h, entry.h.
 // Newton's unknown is Y_i(s_i) = s_i + (dt/V_i) C_i u_i(s_i), each node's own side of its equation (C_i the sum of its
@@ -60,7 +61,7 @@ struct TransportWorkspace {
   std::vector<char> is_seed;
   std::vector<Index> active;
   std::vector<Real> volume, old_content, old_saturation, saturation, previous, pressure, pressure_slope, potential,
-      potential_slope, release, release_slope, residual, change, reached, scale, own_share, own_entry;
+      potential_slope, face_head, release, release_slope, residual, change, reached, scale, own_share, own_entry;
   std::vector<LocalEdge> edges;
   std::vector<Index> row_start, row_edge, row_other;
   std::vector<LocalSupply> supplies;

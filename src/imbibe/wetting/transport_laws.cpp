@@ -152,7 +152,7 @@ void evaluate_nodes(const WettingModel& m, TransportWorkspace& w) {
         w.potential[i] = psi.value, w.potential_slope[i] = psi.slope * p.slope;
       }
     }
-    const Sloped open = valve(p.value, m.open[node]);
+    const Sloped open = valve(p.value + w.face_head[i], m.open[node]);
     w.release[i] = m.release_conductance[node] * open.value;
     w.release_slope[i] = m.release_conductance[node] * open.slope * p.slope;
   }, transport_tile);

@@ -39,14 +39,16 @@ Substep attempt(const TransportInput& input, Contents& contents, const Air& air,
 }
 
 // Fibres that swelled after the last transport may have left a full pore less room: the surplus comes out.
-void release_surplus(const WettingModel& m, Contents& contents, std::vector<ReleasedLiquid>& released) {
+void release_surplus(const WettingModel& m, Contents& contents, Real dt, std::vector<ReleasedLiquid>& released) {
   if (!m.params.swelling) return;
   for (std::size_t node = m.segments; node < m.nodes(); ++node) {
     Real& held = contents.liquid_kg[node];
     if (held <= m.liquid.density * m.volume[node] * least_pore) continue;
     const Real most = m.liquid.density * current_volume(m, contents, node) * (1 + m.overfill[node]);
     if (held <= most) continue;
-    released.push_back({static_cast<Index>(node), held - most});
+    const Real excess = filling_pressure(m, node, held / most * (1 + m.overfill[node])).value - m.open[node];
+    const Real surplus = held - most;
+    released.push_back({static_cast<Index>(node), surplus, excess, surplus / (m.liquid.density * dt)});
     held = most;
   }
 }
@@ -142,7 +144,7 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
     if (!last || report.substeps == 1) report.suggested_step = step;
     report.advanced_s = last ? dt : report.advanced_s + now;
   }
-  release_surplus(model, contents, report.released);
+  release_surplus(model, contents, dt, report.released);
   report.suggested_step = std::clamp(report.suggested_step, 1e-9, longest_step);
   return report;
 }

@@ -20,6 +20,8 @@ namespace imbibe {
 struct ReleasedLiquid {
   Index node = 0;
   Real kg = 0;
+  Real excess_pressure = 0;  // Pa, of the node at the face where it is highest, above what opens that face
+  Real flow = 0;             // m3/s that this excess drives through the mouth
 };
 
 struct WettingReport {
