@@ -14,6 +14,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/output_file.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/io/machine.h"
 #include "imbibe/io/progress.h"
 #include "imbibe/io/report.h"
 #include "imbibe/io/run_folder.h"
@@ -83,11 +84,16 @@ class RunSession {
     if (arguments.resume && fs::is_directory(scene_file_)) folder_path_ = scene_file_, scene_file_ /= "scene.yaml";
     if (arguments.resume && folder_path_.empty() && arguments.output.empty())
       throw InputError("--resume wants the folder of the run: run FOLDER --resume");
+    if (!folder_path_.empty() && !fs::exists(scene_file_))
+      throw InputError(fmt::format("{} holds no scene.yaml: nothing of a run is there yet to resume; start it with run "
+                                   "SCENE -o {}", folder_path_.string(), folder_path_.string()));
     scene_ = read_scene(scene_file_, arguments.overrides);
     if (arguments.until > 0) scene_.duration = arguments.until;
     if (!arguments.output.empty()) folder_path_ = arguments.output;
     if (folder_path_.empty()) folder_path_ = free_run_folder(scene_file_);
-    world_ = build_world(scene_, read_library(library_folders(scene_file_, context.data_folders)));
+    data_folders_ = context.data_folders;
+    world_ = build();
+    warn_of_little_space();
     const bool with_pictures = scene_.output.pictures && !arguments.no_pictures;
     std::optional<Stage> stage;  // of a resumed run: that of its first picture
     if (arguments.resume) {
@@ -122,10 +128,7 @@ class RunSession {
 
   int go() {
     ProgressWriter progress(std::cerr, progress_style(arguments_.progress));
-    RunPlan plan;
-    plan.until = scene_.duration;
-    plan.every = output_interval(scene_);
-    plan.max_steps = scene_.limits.max_steps ? static_cast<std::uint64_t>(*scene_.limits.max_steps) : 0;
+    const RunPlan plan = run_plan();
     RunHooks hooks;
     hooks.at_output = [&](const World& world, const StepReport& report) { write(world, report); };
     hooks.after_step = [&](const World& world, const StepReport& report) {
@@ -135,6 +138,7 @@ class RunSession {
       peak_density_error_ = std::max(peak_density_error_, report.peak_density_error);
       progress.show(progress_of(world, report, plan.until, seconds_since(started_)));
       check_particles(world);
+      check_memory(world);
       // At an output time the output comes first: its row holds numbers of this step, which a checkpoint does not keep.
       if (!is_output_time(world)) checkpoint_when_due(world);
     };
@@ -148,6 +152,11 @@ class RunSession {
       return end == RunEnd::finished ? 0 : 130;
     } catch (const NumericalError& error) {
       progress.finish();
+      try {
+        keep_last_good_state();
+      } catch (const std::exception& why) {
+        std::fprintf(stderr, "the last good state could not be kept: %s\n", why.what());
+      }
       close(RunStatus::failed, error.what());
       throw;
     } catch (const OutputError& error) {  // a full disk, a vanished folder
@@ -158,10 +167,50 @@ class RunSession {
       folder_->write_checkpoint(world_);
       close(RunStatus::failed, error.problems().front().message);
       return 1;
+    } catch (const std::exception& error) {  // out of memory, or our own bug: the last checkpoint stays as it is
+      progress.finish();
+      close_quietly(error.what());
+      throw;
     }
   }
 
  private:
+  World build() const { return build_world(scene_, read_library(library_folders(scene_file_, data_folders_))); }
+
+  // The estimate is of the most that the run can write, so it is no reason to refuse.
+  void warn_of_little_space() const {
+    const double wanted = estimate_scene(scene_, world_.liquid.kind).disk_bytes, there = free_space(folder_path_);
+    if (wanted > there)
+      std::fprintf(stderr, "warning: the run may write up to %.3g GB, the disk of %s has %.3g GB left\n", wanted / 1e9,
+                   folder_path_.c_str(), there / 1e9);
+  }
+
+  RunPlan run_plan() const {
+    RunPlan plan;
+    plan.until = scene_.duration;
+    plan.every = output_interval(scene_);
+    plan.max_steps = scene_.limits.max_steps ? static_cast<std::uint64_t>(*scene_.limits.max_steps) : 0;
+    return plan;
+  }
+
+  // world_ is half-way through a step that failed. Every step gives the same bits again, so the state before it is made
+  // from the newest checkpoint (or from the start): at most a checkpoint's interval of work, and no second copy of the
+  // world while all goes well.
+  void keep_last_good_state() {
+    const std::uint64_t last = world_.step;
+    world_ = World{};  // the room of one world is enough
+    world_ = build();
+    const auto from = read_newest_checkpoint(folder_path_, world_);
+    if (last > world_.step)
+      std::fprintf(stderr, "making the last good state again: %llu steps from %s\n",
+                   static_cast<unsigned long long>(last - world_.step),
+                   from ? from->filename().c_str() : "the start");
+    if (!remake(world_, last, run_plan(), [] { return stop_signal != 0; })) return;
+    folder_->write_checkpoint(world_);
+    std::fprintf(stderr, "the state after step %llu, t = %.6g s, is kept as a checkpoint\n",
+                 static_cast<unsigned long long>(world_.step), world_.time);
+  }
+
   void resume() {
     std::vector<std::string> passed_over;
     const auto from = read_newest_checkpoint(folder_path_, world_, &passed_over);
@@ -214,6 +263,18 @@ class RunSession {
                                  world.time, world.liquid.particles.size(), scene_.limits.max_particles));
   }
 
+  // Looked at once a second: what the estimate before the run did not foresee must not take the machine down.
+  void check_memory(const World& world) {
+    if (seconds_since(memory_looked_at_) < 1) return;
+    memory_looked_at_ = std::chrono::steady_clock::now();
+    const Real used = memory_in_use(), most = allowed_memory(scene_);
+    if (used <= most) return;
+    throw InputError(fmt::format(
+        "stopped at t = {:.6g} s: the run holds {:.4g} GB of memory, more than {} {:.4g} GB; a coarser "
+        "liquid.particle_mass or a smaller textile needs less",
+        world.time, used / 1e9, scene_.limits.max_memory ? "limits.max_memory =" : "80 % of this machine's,", most / 1e9));
+  }
+
   void close(RunStatus status, const std::string& reason) {
     for (const std::string& sentence : explain_uptake(world_)) folder_->note(sentence);
     folder_->finish(world_, status, reason);
@@ -256,6 +317,7 @@ class RunSession {
 
   RunArguments arguments_;
   std::string program_;
+  std::vector<std::string> data_folders_;
   fs::path scene_file_, folder_path_;
   Scene scene_;
   World world_;
@@ -264,7 +326,8 @@ class RunSession {
   double liquid_s_ = 0, wetting_s_ = 0, output_s_ = 0, peak_density_error_ = 0;
   std::uint64_t moved_ = 0, wetted_ = 0;
   ContactCounts contact_;
-  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_,
+                                        memory_looked_at_ = started_;
 };
 
 }  // namespace

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
+#include "imbibe/core/random.h"
 #include "support/run_fixture.h"
 
 namespace {
@@ -109,6 +111,102 @@ TEST_F(InterruptedRun, GoesOnBeyondItsEndWithALaterOne) {
   EXPECT_EQ(hash("out"), hash("whole"));
   EXPECT_EQ(text_of(folder_ / "out" / "series.csv"), text_of(folder_ / "whole" / "series.csv"));
   EXPECT_EQ(text_of(folder_ / "out" / "film.mp4"), text_of(folder_ / "whole" / "film.mp4"));
+}
+
+// A run of a few tenths of a second that is killed again and again at random moments, some of them before it has a
+// folder or while it resumes, and goes on after every kill. IMBIBE_KILLS sets how many (nightly: 200).
+TEST_F(InterruptedRun, KilledAtRandomMomentsItEndsInTheSameState) {
+  const char* wanted = std::getenv("IMBIBE_KILLS");
+  const int kills = wanted ? std::atoi(wanted) : 50;
+  const std::vector<std::string> options{"--no-pictures", "--threads", "1", "--set", "output.checkpoint_every=0.005"};
+  const auto start = std::chrono::steady_clock::now();
+  run("whole", "--no-pictures --threads 1 --set output.checkpoint_every=0.005");
+  const double whole_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  int made = 0, resumed = 0, finished = 0;
+  for (int round = 0; made < kills; ++round) {
+    const std::string out = "killed_" + std::to_string(round);
+    // Each round kills one run up to four times, then lets it end.
+    for (int k = 0; k < 4 && made < kills; ++k) {
+      const bool goes_on = fs::exists(folder_ / out / "scene.yaml");
+      std::vector<std::string> words{"run", goes_on ? in(out) : scene_, goes_on ? "--resume" : "--no-pictures"};
+      if (!goes_on) words.insert(words.end(), {"-o", in(out)});
+      words.insert(words.end(), options.begin() + (goes_on ? 0 : 1), options.end());
+      const double after_s = uniform({.seed = 7, .id = static_cast<std::uint64_t>(made)}) * whole_s;
+      const auto begun = std::chrono::steady_clock::now();
+      const int code = signalled_command(words, SIGKILL, [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() > after_s;
+      });
+      ++made;
+      resumed += goes_on;
+      finished += code == 0;
+      ASSERT_TRUE(code == -1 || code == 0) << "kill " << made << " ended with " << code;
+    }
+    if (fs::exists(folder_ / out / "scene.yaml")) resume(out, "--no-pictures");
+    else run(out, "--no-pictures");
+    ASSERT_EQ(run_json(out)["status"], "done") << out;
+    ASSERT_EQ(hash(out), hash("whole")) << out;
+    ASSERT_EQ(text_of(folder_ / out / "series.csv"), text_of(folder_ / "whole" / "series.csv")) << out;
+    for (const auto& entry : fs::directory_iterator(folder_ / out))
+      ASSERT_NE(entry.path().extension(), ".part") << entry.path();
+    fs::remove_all(folder_ / out);
+  }
+  EXPECT_GT(resumed, kills / 3) << "most kills hit a run that had begun";
+  EXPECT_LT(finished, kills / 2) << "most kills came before the end";
+}
+
+TEST_F(InterruptedRun, GoesOnOrStartsAgainWhenItWasKilledBeforeItsFirstRunJson) {
+  run("whole", "--no-pictures");
+  fs::create_directory(folder_ / "unborn");
+  fs::copy(folder_ / "whole" / "scene.yaml", folder_ / "unborn" / "scene.yaml");
+  write("unborn/run.json.part", "{");
+  resume("unborn", "--no-pictures");
+  EXPECT_EQ(hash("unborn"), hash("whole"));
+  EXPECT_FALSE(fs::exists(folder_ / "unborn" / "run.json.part"));
+
+  fs::create_directory(folder_ / "replaced");
+  fs::copy(folder_ / "whole" / "scene.yaml", folder_ / "replaced" / "scene.yaml");
+  run("replaced", "--no-pictures --overwrite");
+  EXPECT_EQ(hash("replaced"), hash("whole"));
+
+  fs::create_directory(folder_ / "nothing");
+  write("nothing/scene.yaml.part", "version");
+  const Outcome refused = run_command("run " + in("nothing") + " --resume");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.output.find("start it with run SCENE -o"), std::string::npos) << refused.output;
+  run("nothing", "--no-pictures");
+  EXPECT_EQ(hash("nothing"), hash("whole"));
+}
+
+TEST_F(InterruptedRun, NeverReplacesAUsersOwnSceneThatLiesInTheFolder) {
+  fs::create_directory(folder_ / "mine");
+  write("mine/scene.yaml", scene_text());
+  for (const char* option : {"--overwrite", "--resume"}) run("mine", option, 2);
+  EXPECT_EQ(text_of(folder_ / "mine" / "scene.yaml"), scene_text());
+}
+
+// The second drop is too fast for any step: the run ends with code 3 and keeps the state before it.
+TEST_F(InterruptedRun, ABlowUpLeavesTheLastGoodStateAndGoesOnFromItWithBetterNumbers) {
+  scene_ = write("blow_up.yaml", "version: 1\n"
+                 "duration: 4 us\n"
+                 "liquid:\n"
+                 "  kind: water\n"
+                 "  particle_mass: 1e-15 kg\n"
+                 "  drops:\n"
+                 "    - {centre: [0 mm, 0 mm, 0 mm], volume: 3e-16 m3}\n"
+                 "    - {centre: [0.1 mm, 0 mm, 0 mm], volume: 1e-16 m3, velocity: [100 m/s, 0, 0], start: 2 us}\n"
+                 "  solver: {convective_factor: 0.004}\n"
+                 "output: {every: 1 us, pictures: false}\n");
+  const std::string said = run("out", "", 3);
+  EXPECT_NE(said.find("error: numerical failure at t = 2e-06 s, step "), std::string::npos) << said;
+  EXPECT_NE(said.find("the step fell to 4e-11 s by the bound 'convective'"), std::string::npos) << said;
+  EXPECT_NE(said.find("is kept as a checkpoint"), std::string::npos) << said;
+  run("until_then", "--until 2e-6");
+  EXPECT_EQ(hash("out"), hash("until_then")) << "the state before the step that failed";
+  EXPECT_EQ(checkpoint_in("out"), checkpoint_in("until_then"));
+  const Outcome resumed = run_command("run " + in("out") + " --resume --set liquid.solver.convective_factor=0.4");
+  EXPECT_EQ(resumed.code, 0) << resumed.output;
+  EXPECT_NE(resumed.output.find("t = 2e-06 s"), std::string::npos) << resumed.output;
 }
 
 TEST_F(InterruptedRun, SaysWhatIsMissingToResume) {

@@ -162,6 +162,26 @@ TEST_F(RunCommand, StopsWhenTheRunFolderOutgrowsItsLimit) {
   EXPECT_EQ(hash("out"), hash("whole"));
 }
 
+TEST_F(RunCommand, RefusesASceneThatNeedsMoreMemoryThanItsLimit) {
+  const std::string refused = run("refused", "--no-pictures --set limits.max_memory='10 MB'", 2);
+  EXPECT_NE(refused.find("limits.max_memory"), std::string::npos) << refused;
+  EXPECT_FALSE(fs::exists(folder_ / "refused"));
+}
+
+TEST_F(RunCommand, EndsWithOneWhenItsFolderVanishesOrIsNoPlaceToWrite) {
+  const Outcome nowhere = run_command("run " + scene_ + " -o /proc/imbibe/run");
+  EXPECT_EQ(nowhere.code, 1) << nowhere.output;
+  EXPECT_NE(nowhere.output.find("cannot create the run folder /proc/imbibe/run"), std::string::npos) << nowhere.output;
+  // 127 would be a command that could not be started.
+  const fs::path out = folder_ / "out";
+  bool gone = false;
+  const int code = signalled_command({"run", scene_, "-o", out.string(), "--set", "duration=10 s"}, SIGCONT, [&] {
+    if (!gone && fs::exists(out / "liquid_000002.vtp")) fs::rename(out, folder_ / "elsewhere"), gone = true;
+    return gone;
+  });
+  EXPECT_EQ(code, 1);
+}
+
 TEST_F(RunCommand, RendersAndReportsFromItsFolder) {
   run("out", "--no-pictures");
   EXPECT_FALSE(fs::exists(folder_ / "out" / "pictures" / "picture_000010.png"));

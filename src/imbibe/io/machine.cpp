@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <limits>
+#include <system_error>
 #include <thread>
 
 namespace imbibe {
@@ -27,6 +29,20 @@ Machine this_machine() {
   machine.compiler = __VERSION__;
 #endif
   return machine;
+}
+
+double memory_in_use() {
+  std::ifstream pages("/proc/self/statm");
+  double all = 0, resident = 0;
+  return pages >> all >> resident ? resident * static_cast<double>(::sysconf(_SC_PAGE_SIZE)) : 0;
+}
+
+double free_space(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::path at = std::filesystem::absolute(folder, error);
+  while (!std::filesystem::exists(at, error) && at.has_relative_path()) at = at.parent_path();
+  const auto space = std::filesystem::space(at, error);
+  return error ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
 }  // namespace imbibe

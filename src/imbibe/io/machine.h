@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace imbibe {
@@ -15,5 +16,12 @@ struct Machine {
 };
 
 Machine this_machine();
+
+// bytes of memory that this program occupies now; 0 where the system does not say.
+double memory_in_use();
+
+// bytes that the file system of `folder`, or of the nearest folder above it that exists, still takes; infinity where
+// the system does not say.
+double free_space(const std::filesystem::path& folder);
 
 }  // namespace imbibe

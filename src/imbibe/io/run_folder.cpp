@@ -21,6 +21,9 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+// The first line of a run folder's scene.yaml: tells a scene that a run wrote from a user's own of that name.
+const std::string resolved_scene_mark = "# Resolved by Imbibe: every value of the run's scene; runs again.\n";
+
 std::string now_utc() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 const char* name_of(RunStatus status) {
@@ -73,6 +76,11 @@ Real bytes_of(const fs::path& file) {
   return gone ? 0 : static_cast<Real>(bytes);
 }
 
+// A scene that a run wrote, rather than a user's own of that name.
+bool is_resolved_scene(const fs::path& file) {
+  return fs::exists(file) && read_whole_file(file).starts_with(resolved_scene_mark);
+}
+
 // A time belongs to the grid of output times, `every` s apart or as the rows so far are.
 bool is_output_time(Real time, Real every, const std::vector<Real>& rows) {
   if (every <= 0 && rows.size() < 2) return false;
@@ -110,7 +118,7 @@ RunFolder::RunFolder(fs::path folder, RunSetup setup, ExistingFolder existing, c
   for (std::string& stem : collection_stems(world)) collections_.push_back({std::move(stem), {}});
   prepare(existing, world);
   count_all();
-  write_whole_file(folder_ / "scene.yaml", setup_.scene_yaml);
+  write_whole_file(folder_ / "scene.yaml", resolved_scene_mark + setup_.scene_yaml);
   write_run_json(world, RunStatus::running, "");
   series_ = SeriesFile(folder_ / "series.csv");
   log_ = AppendFile(folder_ / "log.txt");
@@ -144,9 +152,13 @@ void RunFolder::prepare(ExistingFolder existing, const World& world) {
   }
   fs::create_directories(folder_, error);
   if (error) throw OutputError(folder_, "cannot create the run folder", error.value());
-  const bool empty = fs::is_empty(folder_, error);
+  fs::directory_iterator entries(folder_, error);
   if (error) throw OutputError(folder_, "cannot read the run folder", error.value());
-  const bool of_a_run = fs::exists(folder_ / "run.json");
+  // A run that was killed in its first moments leaves unfinished files only, or its scene but no run.json yet.
+  const bool empty = std::all_of(begin(entries), end(entries), [](const fs::directory_entry& entry) {
+    return entry.path().extension() == ".part" && is_name_of_a_run(entry.path().filename().string());
+  });
+  const bool of_a_run = fs::exists(folder_ / "run.json") || is_resolved_scene(folder_ / "scene.yaml");
   switch (existing) {
     case ExistingFolder::refuse:
       if (!empty) {
@@ -190,6 +202,7 @@ void RunFolder::continue_run(const World& world) {
   }
   // So are files and pictures of later outputs: they come again, or belong to a run that is no more.
   remove_later_outputs();
+  if (!fs::exists(folder_ / "run.json")) return;
   const Json earlier = Json::parse(read_whole_file(folder_ / "run.json"), nullptr, false);
   if (earlier.is_object()) {
     earlier_wall_s_ = earlier.value("wall_s", 0.0);
@@ -200,6 +213,11 @@ void RunFolder::continue_run(const World& world) {
 void RunFolder::remove_later_outputs() {
   std::vector<fs::path> later;
   std::error_code none;
+  for (const fs::path& folder : {folder_, folder_ / "pictures"}) {  // half written when the run was killed
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+      if (entry.path().extension() == ".part" && entry.is_regular_file(none)) later.push_back(entry.path());
+    }
+  }
   for (const Collection& collection : collections_) {
     for (int i = outputs_;; ++i) {
       const fs::path path = folder_ / fmt::format("{}_{:06}.vtp", collection.stem, i);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "imbibe/core/quantity.h"
 #include "imbibe/scene/placement_checks.h"
@@ -33,8 +34,7 @@ void check_limits(const Scene& scene, const SceneEstimate& need, std::vector<Pro
            fmt::format("the liquid would be {:.3g} particles, more than limits.max_particles = {:.3g}; raise "
                        "particle_mass {:.3g} times or more",
                        need.particles, scene.limits.max_particles, need.particles / scene.limits.max_particles));
-  const double machine = machine_memory();
-  const double allowed = scene.limits.max_memory.value_or(machine > 0 ? 0.8 * machine : 1e30);
+  const double allowed = allowed_memory(scene);
   if (need.memory_bytes > allowed)
     refuse(need.particles * bytes_per_particle > 0.5 * need.memory_bytes || scene.textiles.empty()
                ? "liquid.particle_mass"
@@ -158,7 +158,15 @@ Bounds default_domain(const World& world) {
 
 double machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
-  return pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 0;
+  const double whole = pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 0;
+  double group = 0;  // a group without a limit says "max"
+  std::ifstream limit("/sys/fs/cgroup/memory.max");
+  return limit >> group && group > 0 && (whole == 0 || group < whole) ? group : whole;
+}
+
+double allowed_memory(const Scene& scene) {
+  const double machine = machine_memory();
+  return scene.limits.max_memory.value_or(machine > 0 ? 0.8 * machine : 1e30);
 }
 
 LiquidKind liquid_of(const Scene& scene, const Library& library, std::vector<Problem>& problems) {

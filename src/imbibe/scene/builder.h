@@ -29,8 +29,11 @@ LiquidKind liquid_of(const Scene& scene, const Library& library, std::vector<Pro
 
 SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind);
 
-// bytes; 0 where the system does not say.
+// bytes, of the machine or of the control group (container) that the program runs in; 0 where the system does not say.
 double machine_memory();
+
+// bytes that a run of the scene may take: limits.max_memory, or 80 % of the machine's.
+double allowed_memory(const Scene& scene);
 
 // The drops, boxes and droppers of the scene as sources.
 std::vector<Source> sources_of(const Scene& scene);

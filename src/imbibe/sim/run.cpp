@@ -35,4 +35,12 @@ RunEnd run(World& world, const RunPlan& plan, const RunHooks& hooks) {
   return RunEnd::finished;
 }
 
+bool remake(World& world, std::uint64_t step, RunPlan plan, const std::function<bool()>& stop_requested) {
+  plan.max_steps = 0;
+  RunHooks hooks;
+  hooks.stop_requested = [&] { return world.step >= step || (stop_requested && stop_requested()); };
+  if (world.step < step) run(world, plan, hooks);
+  return world.step == step;
+}
+
 }  // namespace imbibe

@@ -23,7 +23,12 @@ struct RunPlan {
 enum class RunEnd { finished, stopped };
 
 // Output times are multiples of `every`, so a resumed run writes the same ones. Steps land on them exactly.
-// Throws NumericalError from step(), after which `world` is the last state reached.
+// Throws NumericalError from step(); `world` is then half-way through the step that failed. world.step says how many
+// whole steps were made: as many from an earlier state give the last good one again, to the bit (`remake`).
 RunEnd run(World& world, const RunPlan& plan, const RunHooks& hooks);
+
+// Steps `world`, an earlier state of a run of the same plan, to the end of step number `step`, without observers.
+// False when `stop_requested` came first.
+bool remake(World& world, std::uint64_t step, RunPlan plan, const std::function<bool()>& stop_requested = {});
 
 }  // namespace imbibe

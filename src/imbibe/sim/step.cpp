@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "imbibe/core/error.h"
@@ -82,11 +83,39 @@ void book_impulses(World& world, const std::vector<Vec3>& impulses, Real dt) {
   }
 }
 
+// The first particle whose numbers are none, or "".
+std::string lost_particle(const Particles& p) {
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Float4 &x = p.position[i], &u = p.velocity[i];
+    const float square = u.x * u.x + u.y * u.y + u.z * u.z;
+    if (std::isfinite(x.x + x.y + x.z) && std::isfinite(square)) continue;
+    return fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m with velocity ({:.6g}, {:.6g}, {:.6g}) m/s", p.id[i],
+                       x.x, x.y, x.z, u.x, u.y, u.z);
+  }
+  return "";
+}
+
+// "segment 12 of warp yarn 3", "pore 7"; with its place in the sheet.
+std::string node_text(const YarnNetwork& network, std::size_t node) {
+  const bool pore = node >= network.segment_yarn.size();
+  const std::size_t index = pore ? node - network.segment_yarn.size() : node;
+  const Vec3& at = pore ? network.pore_centre[index] : network.segment_centre[index];
+  const std::string place = fmt::format("({:.4g}, {:.4g}) mm in the sheet", at.x * 1e3, at.y * 1e3);
+  if (pore) return fmt::format("pore {} at {}", index, place);
+  const Index yarn = network.segment_yarn[index];
+  return fmt::format("segment {} of {} yarn {} at {}", index - network.yarn_first_segment[yarn],
+                     network.yarn_family[yarn] == Family::warp ? "warp" : "weft", yarn, place);
+}
+
 void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& report) {
   const auto start = Clock::now();
   build_walls(world, scratch);
-  const LiquidStepReport liquid =
-      step_liquid(world.liquid, world.liquid_params, scratch.walls, world.gravity, max_step, scratch.liquid);
+  LiquidStepReport liquid;
+  try {
+    liquid = step_liquid(world.liquid, world.liquid_params, scratch.walls, world.gravity, max_step, scratch.liquid);
+  } catch (const NumericalError& error) {  // the liquid knows neither the world's time nor its step
+    throw NumericalError(world.time, world.step, error.stage, error.where + ": " + lost_particle(world.liquid.particles));
+  }
   book_impulses(world, liquid.wall_impulse, liquid.step_s);
   report.liquid_moved = true;
   report.step_s = liquid.step_s;
@@ -154,8 +183,8 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   report.wetting_iterations += wetting.newton_iterations;
   if (!wetting.converged)
     throw NumericalError(world.time, world.step, "wetting",
-                         fmt::format("textile {}: the network came {:.3g} s of {:.3g} s far", textile.name,
-                                     wetting.advanced_s, dt));
+                         fmt::format("textile {}: the network came {:.3g} s of {:.3g} s far; its hardest node is {}",
+                                     textile.name, wetting.advanced_s, dt, node_text(network, wetting.hardest_node)));
   world.ledger.evaporated_kg += wetting.evaporated_kg;
   next_interval = std::min(next_interval, wetting.suggested_step);
 
@@ -168,8 +197,14 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
                         [&](const Vec3& place) { return solid_at(world, index, place); }, textile.exchange, world.liquid);
   report.released += released.particles;
   if (released.particles > 0) world.pace.resting = false;
-  if (index < scratch.saturation.size())
-    show_saturations(textile, world.air, scratch.saturation[index]);
+  if (index >= scratch.saturation.size()) return;
+  show_saturations(textile, world.air, scratch.saturation[index]);
+  const auto& shown = scratch.saturation[index];
+  const auto lost = std::find_if(shown.begin(), shown.end(), [](float s) { return !std::isfinite(s); });
+  if (lost != shown.end())
+    throw NumericalError(world.time, world.step, "wetting",
+                         fmt::format("textile {}: {} has no finite saturation", textile.name,
+                                     node_text(network, static_cast<std::size_t>(lost - shown.begin()))));
 }
 
 void exchange_all(World& world, Real dt, StepScratch& scratch, StepReport& report) {
@@ -191,6 +226,8 @@ void leave(World& world, StepScratch& scratch, StepReport& report) {
   for (std::size_t i = 0; i < n; ++i) {
     const Float4& x = world.liquid.particles.position[i];
     if (world.domain.contains({x.x, x.y, x.z})) continue;
+    if (!std::isfinite(x.x + x.y + x.z))  // lost, not left
+      throw NumericalError(world.time, world.step, "leave", lost_particle(world.liquid.particles));
     scratch.dead[i] = 1, any = true;
     world.ledger.left_kg += world.liquid.particle_mass - world.liquid.particles.owed_kg[i];
   }
@@ -243,11 +280,12 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     if (!world.textiles.empty()) exchange_all(world, report.step_s, scratch, report);
     if (pace.resting) wake_when_changed(world);
   }
+  if (!(report.step_s >= options.min_step) && report.step_s < remaining * (1 - 1e-12))
+    throw NumericalError(world.time, world.step, "step",
+                         fmt::format("the step fell to {:.3g} s by the bound '{}'", report.step_s, report.step_bound));
   // Landing on `until` exactly keeps output times free of summed rounding.
   world.time = report.step_s >= remaining * (1 - 1e-12) ? options.until : world.time + report.step_s;
   ++world.step;
-  if (!(report.step_s >= options.min_step) && world.time < options.until)
-    throw NumericalError(world.time, world.step, "step", fmt::format("the step fell to {:.3g} s", report.step_s));
   return report;
 }
 

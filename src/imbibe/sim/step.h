@@ -51,6 +51,8 @@ struct StepScratch {
 // Emits what the sources owe at the world's time; step() does it too. For showing a world before its first step.
 void emit_due(World& world);
 
+// Throws NumericalError with the world's time and the number of whole steps behind it; the world is then half-way
+// through the step that failed, and of no use but to be looked at.
 StepReport step(World& world, const StepOptions& options, StepScratch& scratch);
 
 }  // namespace imbibe

@@ -130,6 +130,15 @@ bool newton(const TransportInput& input, Work& w, TransportResult& result) {
   return false;
 }
 
+// A residual that is no number is the farthest of all.
+Index hardest_node(const Work& w) {
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < w.active.size() && std::isfinite(w.residual[worst]); ++i) {
+    if (!(std::abs(w.residual[i]) <= std::abs(w.residual[worst]))) worst = i;
+  }
+  return w.active[worst];
+}
+
 // ---- masses --------------------------------------------------------------------------------------------------------
 
 // Cuts the outflows of nodes that the flows would leave below zero (by the tolerance of Newton's method).
@@ -221,7 +230,10 @@ TransportResult advance_transport(const TransportInput& input, Contents& content
   }
   do {
     gather(input, contents, work);
-    if (!newton(input, work, result)) return result;
+    if (!newton(input, work, result)) {
+      result.hardest_node = hardest_node(work);
+      return result;
+    }
   } while (widen_active(*input.model, work));
   result.active_nodes = work.saturation.size();
   limit_outflows(input, work);

@@ -37,6 +37,7 @@ struct TransportResult {
   bool converged = false;
   int newton_iterations = 0, linear_iterations = 0;
   std::size_t active_nodes = 0;
+  Index hardest_node = 0;   // where `converged` is false: the node farthest from its equation
   Real largest_change = 0;  // of a saturation
   Real moved_share = 0;     // of the liquid in the network: what came to other nodes, in or out
 };

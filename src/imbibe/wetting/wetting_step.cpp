@@ -129,6 +129,7 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
       ++report.rejected;
       if (++rejected_in_a_row <= most_rejections) continue;
       report.converged = false;
+      report.hardest_node = substep.transport.hardest_node;
       break;
     }
     ++report.substeps;
