@@ -8,7 +8,6 @@
 // Confidence: typical of the class, good to a factor of two; a measured fabric replaces them in the scene.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 

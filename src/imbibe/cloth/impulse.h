@@ -1,0 +1,130 @@
+// The impulse of one elastic piece over a substep, backward in time.
+//
+//   energy k C(x)^2 / 2,  force -k (C + beta dC/dt) grad C
+//   J = -dt k (C~ + beta C') / (1 + dt k (dt + beta) S),   S = sum over nodes of |grad C|^2 / m
+//
+// J: what the piece gives to its nodes along grad C; C~: C where the velocities would carry the nodes in dt; C' = grad C .
+// v; beta damping time s; m nodal mass (infinite when pinned). With one piece this is the backward Euler step of a damped
+// oscillator: bounded for every k and dt, energy falls. Pieces are solved one after the other, once per substep: extended
+// position-based dynamics with small steps (Macklin, Mueller & Chentanez, MIG 2016, eq. 18; Macklin et al., SCA 2019),
+// written for velocities so that momentum is kept to rounding.
+// Neighbours that are solved later pull a piece apart again, by at most dt |J| S when their tension is like its own: the
+// strain that this leaves is the error that sets the substep (cloth_step.h). Up to a tenth of the piece's own strain
+// |J|/(dt k) it is not counted: no fabric's stiffness is known better. Carrying J over from substep to substep would remove
+// the error at rest, but with more than half of J carried long waves gain energy.
+// Tested in tests/cloth/impulse_test.cpp against the closed form of the oscillator.
+#pragma once
+
+#include "imbibe/cloth/topology.h"
+
+namespace imbibe {
+
+// The pure equation; `value` = C~, `rate` = C', `mobility` = S. Any unit of C.
+template <class T>
+T elastic_impulse(const T& value, const T& rate, Real stiffness, Real damping, Real mobility, Real dt) {
+  const Real soft = dt * stiffness;
+  return (value + rate * damping) * (-soft / (1 + soft * (dt + damping) * mobility));
+}
+
+// Nodes as the pieces see them. A pinned node has mobility 0; what is given to it is summed in `held`.
+struct NodeMotion {
+  const Vec3* position = nullptr;
+  Vec3* velocity = nullptr;
+  const Real* inverse_mass = nullptr;
+  Vec3* held = nullptr;  // N s
+
+  void give(Index node, const Vec3& impulse) const {
+    const Real w = inverse_mass[node];
+    if (w > 0) {
+      velocity[node] += w * impulse;
+    } else {
+      held[node] += impulse;
+    }
+  }
+};
+
+// sum weight x; the weights add up to zero, so differences are taken and nothing cancels.
+template <std::size_t N>
+Vec3 linear_form(const Vec3* x, const std::array<Index, N>& node, const std::array<Real, N>& weight) {
+  Vec3 sum;
+  const Vec3 first = x[node[0]];
+  for (std::size_t k = 1; k < N; ++k) sum += weight[k] * (x[node[k]] - first);
+  return sum;
+}
+// Of the positions and of the velocities.
+struct LinearForm {
+  Vec3 value{}, rate{};
+};
+template <std::size_t N>
+LinearForm linear_form(const NodeMotion& nodes, const std::array<Index, N>& node, const std::array<Real, N>& weight) {
+  return {linear_form(nodes.position, node, weight), linear_form<N>(nodes.velocity, node, weight)};
+}
+template <std::size_t N>
+Real mobility_of(const NodeMotion& nodes, const std::array<Index, N>& node, const std::array<Real, N>& weight) {
+  Real sum = 0;
+  for (std::size_t k = 0; k < N; ++k) sum += weight[k] * weight[k] * nodes.inverse_mass[node[k]];
+  return sum;
+}
+
+inline constexpr Real uncounted_part = 0.1;  // of a piece's own strain
+
+// Solves one piece of stretch (or a spring); returns the strain error.
+template <class Piece>
+Real solve_stretch(const Piece& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt) {
+  const LinearForm form = linear_form(nodes, piece.node, piece.weight);
+  const Real mobility = mobility_of(nodes, piece.node, piece.weight);
+  const Vec3 ahead = form.value + dt * form.rate;
+  const Real length = norm(ahead);
+  if (!(length > 0)) return 0;  // no direction: the piece is folded to a point
+  const Vec3 along = ahead / length;
+  const Real impulse = elastic_impulse(length - 1, dot(along, form.rate), stiffness, damping, mobility, dt);
+  for (std::size_t k = 0; k < piece.node.size(); ++k) nodes.give(piece.node[k], (piece.weight[k] * impulse) * along);
+  return std::abs(impulse) * (mobility * dt - uncounted_part / (dt * stiffness));
+}
+
+// Provot's correction: a piece longer than (1 + limit) of its rest length is brought back to it, by an impulse shared by
+// mass, so that momentum is kept and the nodes lose the speed at which they parted.
+template <class Piece>
+void correct_stretch(const Piece& piece, const NodeMotion& nodes, Real limit, Real dt) {
+  const LinearForm form = linear_form(nodes, piece.node, piece.weight);
+  const Vec3 ahead = form.value + dt * form.rate;
+  const Real squared = squared_norm(ahead);
+  if (squared <= (1 + limit) * (1 + limit)) return;
+  const Real mobility = mobility_of(nodes, piece.node, piece.weight);
+  if (!(mobility > 0)) return;
+  const Real length = std::sqrt(squared);
+  const Vec3 impulse = ((1 + limit - length) / (dt * mobility * length)) * ahead;
+  for (std::size_t k = 0; k < piece.node.size(); ++k) nodes.give(piece.node[k], piece.weight[k] * impulse);
+}
+
+// As solve_stretch; the error is an angle.
+template <std::size_t N>
+Real solve_shear(const ShearPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt) {
+  const LinearForm weft = linear_form(nodes, piece.node, piece.weft), warp = linear_form(nodes, piece.node, piece.warp);
+  const Vec3 a = weft.value + dt * weft.rate, b = warp.value + dt * warp.rate;
+  const Real length_a = norm(a), length_b = norm(b);
+  if (!(length_a > 0) || !(length_b > 0)) return 0;
+  const Vec3 ua = a / length_a, ub = b / length_b;
+  const Real cosine = dot(ua, ub);
+  const Vec3 gradient_a = (ub - cosine * ua) / length_a, gradient_b = (ua - cosine * ub) / length_b;
+  std::array<Vec3, N> gradient;
+  Real mobility = 0;
+  for (std::size_t k = 0; k < N; ++k) {
+    gradient[k] = piece.weft[k] * gradient_a + piece.warp[k] * gradient_b;
+    mobility += nodes.inverse_mass[piece.node[k]] * squared_norm(gradient[k]);
+  }
+  const Real rate = dot(gradient_a, weft.rate) + dot(gradient_b, warp.rate);
+  const Real impulse = elastic_impulse(cosine, rate, stiffness, damping, mobility, dt);
+  for (std::size_t k = 0; k < N; ++k) nodes.give(piece.node[k], impulse * gradient[k]);
+  return std::abs(impulse) * (mobility * dt - uncounted_part / (dt * stiffness));
+}
+
+template <std::size_t N>
+void solve_bend(const BendPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt) {
+  const LinearForm form = linear_form(nodes, piece.node, piece.weight);
+  const Vec3 impulse = elastic_impulse(form.value + dt * form.rate, form.rate, stiffness, damping,
+                                       mobility_of(nodes, piece.node, piece.weight), dt);
+  for (std::size_t k = 0; k < N; ++k) nodes.give(piece.node[k], piece.weight[k] * impulse);
+}
+
+}  // namespace imbibe

@@ -1,0 +1,160 @@
+#include "imbibe/cloth/threads.h"
+
+#include <algorithm>
+
+#include "imbibe/cloth/elastic.h"
+#include "imbibe/core/parallel.h"
+
+namespace imbibe {
+namespace {
+
+// Where a sheet hangs by a point the tension grows without bound as the mesh gets finer, and so does its error, over an
+// area that shrinks: a single edge may be wrong by ten times what the sheet may be on average.
+constexpr Real singular_part = 0.1;
+
+// The edges [first, end) of one thread.
+Real solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_t first, std::size_t end,
+                  const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt, ThreadSolve& work) {
+  // Down: directions, and elimination of the lower diagonal.
+  Real upper_before = 0, impulse_before = 0;  // of the edge before
+  Real b_before = 0;
+  Vec3 direction_before;
+  for (std::size_t e = first; e < end; ++e) {
+    const StretchPiece<2>& piece = threads.pieces[e];
+    const auto [i, j] = piece.node;
+    const Real b = piece.weight[1], wi = nodes.inverse_mass[i], wj = nodes.inverse_mass[j];
+    const Vec3 rate = b * (nodes.velocity[j] - nodes.velocity[i]);
+    const Vec3 ahead = b * (nodes.position[j] - nodes.position[i]) + dt * rate;
+    const Real length = norm(ahead);
+    const Vec3 direction = length > 0 ? ahead / length : direction_before;
+    const PieceMaterial& m = materials[e];
+    const Real reach = dt + m.damping;
+    const Real lower = -reach * b * b_before * wi * dot(direction, direction_before);
+    const Real diagonal = 1 / (dt * m.stiffness) + reach * b * b * (wi + wj) - lower * upper_before;
+    const Real side = -(length - 1 + m.damping * dot(direction, rate)) - lower * impulse_before;
+    const Real inverse = 1 / diagonal;
+    work.direction[e] = direction;
+    impulse_before = work.impulse[e] = side * inverse;
+    if (e + 1 < end) {
+      const StretchPiece<2>& next = threads.pieces[e + 1];
+      const Real b_next = next.weight[1];
+      const Vec3 next_ahead = b_next * (nodes.position[next.node[1]] - nodes.position[next.node[0]]) +
+                              (dt * b_next) * (nodes.velocity[next.node[1]] - nodes.velocity[next.node[0]]);
+      const Real next_length = norm(next_ahead);
+      const Real aligned = next_length > 0 ? dot(direction, next_ahead) / next_length : squared_norm(direction);
+      upper_before = work.upper[e] = -reach * b * b_next * wj * aligned * inverse;
+    }
+    b_before = b;
+    direction_before = direction;
+  }
+  // Up: the impulses, given to the nodes.
+  Real turn = 0, after = 0;
+  for (std::size_t e = end; e-- > first;) {
+    const StretchPiece<2>& piece = threads.pieces[e];
+    Real& impulse = work.impulse[e];
+    if (e + 1 < end) impulse -= work.upper[e] * after;
+    after = impulse;
+    const Real b = piece.weight[1];
+    const Vec3 given = (b * impulse) * work.direction[e];
+    nodes.give(piece.node[0], -given);
+    nodes.give(piece.node[1], given);
+    work.expected_strain[e] = -impulse / (dt * materials[e].stiffness);
+    turn = std::max(turn, dt * std::abs(impulse) * b * b *
+                              (nodes.inverse_mass[piece.node[0]] + nodes.inverse_mass[piece.node[1]]));
+  }
+  return turn;
+}
+
+// The nodes [first, end) of one thread, without its ends. Rows are divided by dt + beta, which makes the matrix symmetric.
+void solve_bend(const ThreadList<BendPiece<3>>& threads, std::size_t first, std::size_t end,
+                const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt,
+                std::vector<ThreadSolve::BendRow>& rows) {
+  using Row = ThreadSolve::BendRow;
+  Row one, two;  // the rows one and two before
+  one.diagonal = two.diagonal = 1;
+  Real beside = 0, beyond = 0, beyond_next = 0;  // (c, c-1), (c, c-2), and (c+1, c-1)
+  for (std::size_t c = first; c < end; ++c) {
+    const auto& node = threads.pieces[c].node;
+    const Real w0 = nodes.inverse_mass[node[0]], w1 = nodes.inverse_mass[node[1]], w2 = nodes.inverse_mass[node[2]];
+    const PieceMaterial& m = materials[c];
+    const Real reach = dt + m.damping;
+    const Vec3 value = (nodes.position[node[0]] - nodes.position[node[1]]) + (nodes.position[node[2]] - nodes.position[node[1]]);
+    const Vec3 rate = (nodes.velocity[node[0]] - nodes.velocity[node[1]]) + (nodes.velocity[node[2]] - nodes.velocity[node[1]]);
+    Row row;
+    row.lower2 = beyond / two.diagonal;
+    row.lower1 = (beside - row.lower2 * two.diagonal * one.lower1) / one.diagonal;
+    row.diagonal = 1 / (dt * m.stiffness * reach) + w0 + 4 * w1 + w2 - row.lower1 * row.lower1 * one.diagonal -
+                   row.lower2 * row.lower2 * two.diagonal;
+    row.side = (-1 / reach) * value - rate - row.lower1 * one.side - row.lower2 * two.side;
+    rows[c] = row;
+    two = one, one = row;
+    beside = -2 * (w1 + w2), beyond = beyond_next, beyond_next = w2;
+  }
+  one = two = {};
+  for (std::size_t c = end; c-- > first;) {
+    Row& row = rows[c];
+    row.side = row.side / row.diagonal - one.lower1 * one.side - two.lower2 * two.side;
+    two = one, one = row;
+    const auto& node = threads.pieces[c].node;
+    nodes.give(node[0], row.side);
+    nodes.give(node[1], -2.0 * row.side);
+    nodes.give(node[2], row.side);
+  }
+}
+
+// Calls solve(thread) for all weft threads, which share no node, then for all warp threads.
+template <class Piece, class Solve>
+void for_threads(const ThreadList<Piece>& threads, Solve&& solve) {
+  const auto family = [&](std::size_t begin, std::size_t end) {
+    if (begin == end) return;
+    const std::size_t length = std::max<std::size_t>(1, threads.first[begin + 1] - threads.first[begin]);
+    parallel_for(end - begin, [&](std::size_t k) { solve(begin + k); }, std::max<std::size_t>(1, 1024 / length));
+  };
+  family(0, threads.weft_threads);
+  family(threads.weft_threads, threads.size());
+}
+
+}  // namespace
+
+Real solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads, const std::vector<PieceMaterial>& materials,
+                          const NodeMotion& nodes, Real dt, ThreadSolve& work) {
+  const std::size_t n = threads.pieces.size();
+  work.direction.resize(n), work.upper.resize(n), work.impulse.resize(n), work.expected_strain.resize(n);
+  work.thread_turn.assign(threads.size(), 0);
+  for_threads(threads, [&](std::size_t t) {
+    work.thread_turn[t] = solve_stretch(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work);
+  });
+  return threads.size() == 0 ? 0 : *std::max_element(work.thread_turn.begin(), work.thread_turn.end());
+}
+
+void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
+                       const NodeMotion& nodes, Real dt, ThreadSolve& work) {
+  work.bend.resize(threads.pieces.size());
+  for_threads(threads, [&](std::size_t t) {
+    solve_bend(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work.bend);
+  });
+}
+
+Real thread_strain_error(const ThreadList<StretchPiece<2>>& threads, const Vec3* position, const ThreadSolve& work) {
+  struct Errors {
+    Real squares = 0, area = 0, greatest = 0;
+    Errors& operator+=(const Errors& o) {
+      squares += o.squares, area += o.area, greatest = std::max(greatest, o.greatest);
+      return *this;
+    }
+  };
+  const Errors all = parallel_sum(threads.pieces.size(), [&](std::size_t begin, std::size_t end) {
+    Errors sum;
+    for (std::size_t e = begin; e < end; ++e) {
+      const StretchPiece<2>& piece = threads.pieces[e];
+      const Real strain = norm(linear_form(position, piece.node, piece.weight)) - 1;
+      const Real expected = work.expected_strain[e];
+      const Real error = std::max(Real{0}, std::abs(strain - expected) - uncounted_part * std::abs(expected));
+      sum += {piece.area * error * error, piece.area, error};
+    }
+    return sum;
+  });
+  return all.area > 0 ? std::max(std::sqrt(all.squares / all.area), singular_part * all.greatest) : 0;
+}
+
+}  // namespace imbibe

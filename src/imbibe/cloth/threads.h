@@ -1,0 +1,54 @@
+// Stretch and bending of whole threads at once: the impulses of all edges (all nodes) of a thread, backward in time.
+//
+// Stretch, unknowns J_e [J s]:
+//   J_e/(dt k_e) + (dt + beta_e) D C'_e = -(C~_e + beta_e C'_e)
+//   D C'_e = b_e [(w_i + w_j) b_e J_e - w_i b_(e-1) (d_e . d_(e-1)) J_(e-1) - w_j b_(e+1) (d_e . d_(e+1)) J_(e+1)]
+// e edge from node i to node j, b_e 1/length at rest, d_e its direction and C~_e its strain where the velocities would
+// carry the nodes in dt, C'_e strain rate, w 1/mass, k_e and beta_e as in impulse.h, D C' what all J change.
+// Bending, unknowns the vectors J_i [N s]: the same with the linear form s_i = x_(i-1) - 2 x_i + x_(i+1) for C.
+// The matrices have three and five diagonals and are positive, so one sweep down and one up solve them, at about the cost
+// of one relaxation of the pieces.
+//
+// Why: relaxing edges one by one leaves each thread longer by dt^2 times its tension over a nodal mass, which for a cloth
+// hung up by an edge asks for substeps of tens of microseconds. Here tension passes through a whole thread in one substep,
+// and what is left comes only from the threads that cross it. Directions are those at the predicted places; that is
+// stable while the transverse waves of the tension are resolved,
+//   2 dt |J| b^2 (w_i + w_j) < 2                                      (turn, below)
+// Source: direct solution of chains of constraints, Deul et al., Comput. Graph. Forum 37 (2018) 313, for rods.
+// Tested in tests/cloth/threads_test.cpp (against a dense solution) and closed_forms_test.cpp.
+#pragma once
+
+#include <vector>
+
+#include "imbibe/cloth/impulse.h"
+#include "imbibe/cloth/topology.h"
+
+namespace imbibe {
+
+struct PieceMaterial;
+
+// Work space of the edges, thread by thread.
+struct ThreadSolve {
+  std::vector<Vec3> direction;
+  std::vector<Real> upper, impulse;  // eliminated upper diagonal; right-hand side, then J [J s]
+  std::vector<Real> expected_strain; // the material's own strain at the impulses found
+  std::vector<Real> thread_turn;     // greatest of each thread
+
+  struct BendRow {
+    Real diagonal = 0, lower1 = 0, lower2 = 0;  // of the factors L D L^T
+    Vec3 side{};                                // right-hand side, then J
+  };
+  std::vector<BendRow> bend;
+};
+
+// Solves all weft threads, then all warp threads. Returns the greatest `turn` = dt |J| b^2 (w_i + w_j).
+Real solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads, const std::vector<PieceMaterial>& materials,
+                          const NodeMotion& nodes, Real dt, ThreadSolve& work);
+void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
+                       const NodeMotion& nodes, Real dt, ThreadSolve& work);
+
+// Strain of the edges as they are beyond expected_strain, less a tenth of that (impulse.h): root mean square over the
+// cloth, and at least a tenth of the greatest.
+Real thread_strain_error(const ThreadList<StretchPiece<2>>& threads, const Vec3* position, const ThreadSolve& work);
+
+}  // namespace imbibe
