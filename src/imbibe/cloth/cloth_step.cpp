@@ -32,6 +32,7 @@ void ClothScratch::Work::build(const Sheet& sheet) {
     for (const Index i : sheet.triangles[k]) node_triangles[next[i]++] = static_cast<Index>(k);
   }
   node_area = node_areas(sheet);
+  self.owners = make_owners(sheet);
 }
 
 void ClothScratch::Work::prepare(const Sheet& sheet, const ClothParams& params) {
@@ -59,6 +60,7 @@ void ClothScratch::Work::update_normals(const Sheet& sheet) {
 namespace {
 
 constexpr std::size_t node_tile = 1024;
+constexpr int contact_passes = 4;
 
 struct Step {
   Sheet& sheet;
@@ -130,7 +132,8 @@ void end_pins(Step& s) {
 
 void touch_solids(Step& s, Real h) {
   s.report.solid_contacts = 0;
-  for (std::size_t k = 0; k < s.loads.solids.size(); ++k) {
+  const std::size_t solids = s.loads.solids.size();
+  for (std::size_t k = 0; k < solids; ++k) {
     const ClothSolid& solid = s.loads.solids[k];
     const Vec3 moved = s.elapsed * solid.velocity;
     struct Given {
@@ -142,17 +145,14 @@ void touch_solids(Step& s, Real h) {
       Given sum;
       for (std::size_t i = begin; i < end; ++i) {
         const Real w = s.work.inverse_mass[i];
-        if (w == 0) continue;
-        Real& clearance = s.work.clearance[i * s.loads.solids.size() + k];
+        Real& clearance = s.work.clearance[i * solids + k];
         Vec3& v = s.sheet.velocity[i];
-        clearance -= h * norm(v - solid.velocity);
-        if (clearance > 0) continue;
+        if (w == 0 || clearance > h * norm(v - solid.velocity)) continue;
         const SolidTouch touch = touch_solid(solid, moved,
                                              {.position = s.sheet.position[i], .velocity = v, .inverse_mass = w,
                                               .half_thickness = 0.5 * s.params.hand.thickness,
-                                              .pull = s.sheet.cling[i] * s.work.node_area[i]}, h);
-        // Looked at from the start of the substep: this one's path is used up too.
-        clearance = touch.clearance - h * norm(v - solid.velocity);
+                                              .pull = s.sheet.cling[i] * s.work.node_area[i] / contact_passes}, h);
+        clearance = touch.clearance;
         if (!touch.touches) continue;
         v += w * touch.impulse;
         sum.impulse += touch.impulse;
@@ -165,13 +165,47 @@ void touch_solids(Step& s, Real h) {
   }
 }
 
+// Layers push on each other and on the solids in turn: a pile rests on what is below it.
+void touch(Step& s, Real h) {
+  const Real thickness = s.params.hand.thickness;
+  SelfContact& self = s.work.self;
+  const SelfContactRules rules{.thickness = thickness, .friction = s.params.contact.friction,
+                               .cling = s.sheet.cling.data(), .area = s.work.node_area.data()};
+  if (!s.params.contact.self) return touch_solids(s, h);
+  reserve_near_pairs(s.sheet, thickness, greatest_motion(s.sheet, h), self);
+  find_near_pairs(rules, s.nodes(), h, self);
+  const int passes = self.hits.empty() ? 1 : contact_passes;
+  for (int k = 0; k < passes; ++k) {
+    repel_near_pairs(rules, s.nodes(), h, 1.0 / passes, self);
+    touch_solids(s, h);
+  }
+  s.report.self_contacts = self.touching;
+  reserve_near_pairs(s.sheet, thickness, greatest_motion(s.sheet, h), self);
+  const SweptReport swept = prevent_crossings(s.sheet, s.nodes(), h, self);
+  s.report.swept_hits += swept.hits;
+  s.report.rigid_zones += swept.zones;
+  s.report.unresolved_crossings += swept.unresolved;
+  self.used += greatest_motion(s.sheet, h);
+}
+
+void move_nodes(Step& s, Real h) {
+  const std::size_t solids = s.loads.solids.size();
+  parallel_for(s.sheet.size(), [&](std::size_t i) {
+    const Vec3 v = s.sheet.velocity[i];
+    s.sheet.position[i] += h * v;
+    for (std::size_t k = 0; k < solids; ++k) {
+      s.work.clearance[i * solids + k] -= h * norm(v - s.loads.solids[k].velocity);
+    }
+  }, node_tile);
+}
+
 ElasticErrors advance_substep(Step& s, Real h) {
   apply_loads(s, h);
   move_pins(s, h);
   const ElasticErrors errors = solve_elastic(s.work.topology, s.work.materials, s.params, s.nodes(), h);
-  touch_solids(s, h);
+  touch(s, h);
   end_pins(s);
-  parallel_for(s.sheet.size(), [&](std::size_t i) { s.sheet.position[i] += h * s.sheet.velocity[i]; }, node_tile);
+  move_nodes(s, h);
   return errors;
 }
 
@@ -228,6 +262,7 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
   work.prepare(sheet, params);
   if (params.air.density > 0) work.update_normals(sheet);
   work.clearance.assign(sheet.size() * loads.solids.size(), 0);
+  if (work.self.position != sheet.position) work.self.reserve = 0;
   if (sheet.substep == 0) sheet.substep = first_substep(s);
   report.substep = dt;
   while (s.elapsed < dt) {
@@ -248,6 +283,7 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
   for (const Vec3& impulse : scratch.pin_impulse) report.pin_impulse += impulse;
   for (const Vec3& impulse : scratch.solid_impulse) report.solid_impulse += impulse;
   require_finite(s);
+  if (params.contact.self) work.self.position = sheet.position;
   if (loads.measure) measure(s);
   return report;
 }

@@ -125,7 +125,8 @@ struct ClothStepReport {
   std::size_t solid_contacts = 0;  // nodes that touched a solid in the last substep
   std::size_t self_contacts = 0;   // pairs that touched in the last substep
   std::size_t swept_hits = 0;      // crossings that the swept test found and prevented
-  std::size_t rigid_zones = 0;     // groups of nodes that had to move as one to prevent a crossing
+  std::size_t rigid_zones = 0;     // rounds in which nodes had to move as one to prevent a crossing
+  std::size_t unresolved_crossings = 0;  // pairs that pins of different motion forced through each other
   Real kinetic_energy = 0;      // J at the end of the step
   Real elastic_energy = 0;
   Real potential_energy = 0;    // J against gravity, zero at the origin

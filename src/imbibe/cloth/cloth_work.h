@@ -3,6 +3,7 @@
 
 #include "imbibe/cloth/cloth_step.h"
 #include "imbibe/cloth/elastic.h"
+#include "imbibe/cloth/self_contact.h"
 
 namespace imbibe {
 
@@ -19,6 +20,7 @@ struct ClothScratch::Work {
   std::vector<Vec3> held;                   // N s given to pinned nodes in a substep
   std::vector<Vec3> normal;                 // of the nodes, unit
   std::vector<Real> clearance;              // m, node-major by solid: how far it may move unseen
+  SelfContact self;
 
   void build(const Sheet& sheet);
   void prepare(const Sheet& sheet, const ClothParams& params);
