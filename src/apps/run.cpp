@@ -190,6 +190,7 @@ class RunSession {
     plan.until = scene_.duration;
     plan.every = output_interval(scene_);
     plan.max_steps = scene_.limits.max_steps ? static_cast<std::uint64_t>(*scene_.limits.max_steps) : 0;
+    if (scene_.limits.max_step) plan.step.max_step = *scene_.limits.max_step;
     return plan;
   }
 

@@ -86,6 +86,7 @@ ReleaseReport release_particles(const YarnNetwork& network, const Placement& pla
                                 ExchangeState& exchange, Liquid& liquid) {
   ReleaseReport report;
   for (const ReleasedLiquid& r : released) exchange.waiting_kg[r.node] += r.kg;
+  if (liquid.particle_mass <= 0) return report;  // a scene without free liquid: what comes out waits on the face
   const Real mass = liquid.particle_mass, dx = liquid.spacing(), density = liquid.kind.density;
   std::vector<Index> full;  // nodes about which a particle's mass waits, most first
   for (Index k = 0; k < exchange.waiting_kg.size(); ++k)

@@ -104,6 +104,24 @@ void add_textile(const Scene& scene, std::size_t i, const Library& library, Worl
   }
 }
 
+// What `start` says, in place of conditioned fibres without liquid between them.
+Contents starting_contents(const StartSpec& start, const YarnNetwork& network, const WettingModel& model, Air air) {
+  if (start.humidity) air.humidity = *start.humidity;
+  Contents contents = conditioned_contents(model, air);
+  for (std::size_t node = 0; node < network.nodes(); ++node) {
+    Real held = network.is_pore(node) ? start.pores : start.yarns;
+    const Vec3& x = network.node_centre(node);
+    for (const SpotSpec& spot : start.spots) {
+      const Real u = 2 * (x.x - spot.centre[0]) / spot.size[0], v = 2 * (x.y - spot.centre[1]) / spot.size[1];
+      const bool inside = spot.round ? u * u + v * v <= 1 : std::abs(u) <= 1 && std::abs(v) <= 1;
+      if (inside) held = network.is_pore(node) ? spot.pores : spot.yarns;
+    }
+    contents.liquid_kg[node] = held * model.liquid.density * current_volume(model, contents, node);
+    if (!contents.reached_saturation.empty()) contents.reached_saturation[node] = held;
+  }
+  return contents;
+}
+
 void add_wetting(const Scene& scene, std::size_t i, World& world, std::vector<Problem>& problems) {
   Textile& textile = world.textiles[i];
   const YarnNetwork& network = textile.fabric->network;
@@ -113,7 +131,14 @@ void add_wetting(const Scene& scene, std::size_t i, World& world, std::vector<Pr
                                .surface_tension = kind.surface_tension};
     textile.model = std::make_shared<const WettingModel>(
         build_wetting_model(network, scene.textiles[i].wetting.network, liquid));
-    textile.contents = conditioned_contents(*textile.model, world.air);
+    textile.contents = starting_contents(scene.textiles[i].start, network, *textile.model, world.air);
+    for (std::size_t r = 0; r < scene.textiles[i].reservoirs.size(); ++r) {
+      try {
+        textile.reservoirs.push_back(make_reservoir(scene.textiles[i].reservoirs[r], network));
+      } catch (const InputError& error) {
+        add_at(scene, error, problems, fmt::format("textiles[{}].reservoirs[{}]", i, r));
+      }
+    }
     const Real spacing = world.liquid.particle_mass > 0 ? world.liquid.spacing() : 0;
     textile.faces = std::make_shared<const FaceMap>(build_face_map(network, spacing));
     textile.contact = scene.textiles[i].contact;

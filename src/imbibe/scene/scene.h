@@ -14,6 +14,7 @@
 #include "imbibe/core/parameter.h"
 #include "imbibe/core/types.h"
 #include "imbibe/coupling/contact.h"
+#include "imbibe/coupling/reservoir.h"
 #include "imbibe/fabric/fabric.h"
 #include "imbibe/geometry/shape_spec.h"
 #include "imbibe/liquid/liquid_step.h"
@@ -166,6 +167,40 @@ void describe(V& v, WettingSpec& p) {
     v.unavailable("cells", "the cell model is not available in this version; write `wetting: network`");
 }
 
+// A wet place of a textile at the start.
+struct SpotSpec {
+  std::array<Real, 2> centre{0, 0};  // m, in the sheet
+  std::array<Real, 2> size{0, 0};    // m, full lengths along weft and warp
+  bool round = true;
+  Real yarns = 0, pores = 0;         // saturation
+};
+
+template <class V>
+void describe(V& v, SpotSpec& p) {
+  v.value("centre", p.centre, {.unit = "m", .shown = "mm", .help = "along weft and warp from the sheet's middle"});
+  v.value("size", p.size, {.unit = "m", .shown = "mm", .min = 0, .above_min = true, .required = true,
+                           .help = "full lengths along weft and warp"});
+  v.value("round", p.round, {.help = "an ellipse of these axes; false: a rectangle"});
+  v.value("yarns", p.yarns, {.min = 0, .max = 1, .help = "saturation of the yarns there"});
+  v.value("pores", p.pores, {.min = 0, .max = 1, .help = "saturation of the pores there"});
+}
+
+// What a textile holds at the start, in place of fibres in balance with the air and nothing between them.
+struct StartSpec {
+  std::optional<Real> humidity;  // 1
+  Real yarns = 0, pores = 0;     // saturation
+  std::vector<SpotSpec> spots;
+};
+
+template <class V>
+void describe(V& v, StartSpec& p) {
+  v.value("humidity", p.humidity,
+          {.min = 0, .max = 1, .help = "relative humidity with which the fibres are in balance; default: that of the air"});
+  v.value("yarns", p.yarns, {.min = 0, .max = 1, .help = "saturation of the yarns"});
+  v.value("pores", p.pores, {.min = 0, .max = 1, .help = "saturation of the pores"});
+  v.list("spots", p.spots, "places that hold other amounts; a later one wins where they overlap");
+}
+
 struct TextileSpec {
   std::string name = "textile";
   Vec3 centre{};                       // m, of the mid-plane
@@ -177,6 +212,8 @@ struct TextileSpec {
   SheetSpec sheet;
   WettingSpec wetting;
   ContactParams contact;
+  StartSpec start;
+  std::vector<ReservoirSpec> reservoirs;
 };
 
 template <class V>
@@ -196,6 +233,8 @@ void describe(V& v, TextileSpec& p) {
   v.group("sheet", p.sheet, "how the cloth is held");
   v.group("wetting", p.wetting, "how it takes liquid up");
   v.group("contact", p.contact, "how particles that hit its yarns bounce");
+  v.group("start", p.start, "what it holds at the start");
+  v.list("reservoirs", p.reservoirs, "liquid that stands against parts of it and never runs out");
 }
 
 struct SolidSpec {
@@ -256,6 +295,7 @@ struct LimitsSpec {
   std::optional<Real> max_memory;  // bytes
   Real max_disk = 50e9;            // bytes
   std::optional<Real> max_steps;
+  std::optional<Real> max_step;    // s
 };
 
 template <class V>
@@ -265,6 +305,7 @@ void describe(V& v, LimitsSpec& p) {
           {.unit = "byte", .shown = "GB", .min = 1e6, .help = "most memory; default: 80 % of the machine's"});
   v.value("max_disk", p.max_disk, {.unit = "byte", .shown = "GB", .min = 1e6, .help = "most room of the run folder"});
   v.value("max_steps", p.max_steps, {.min = 1, .max = 1e15, .help = "stop after so many steps; default: no limit"});
+  v.value("max_step", p.max_step, {.unit = "s", .min = 1e-9, .help = "longest time step; default: what accuracy asks for"});
 }
 
 struct Scene {

@@ -175,10 +175,14 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   const YarnNetwork& network = textile.fabric->network;
   Footprint& footprint = scratch.footprint;
   find_footprint(world.liquid, network, textile.placement, *textile.faces, world.gravity, textile.exchange, footprint);
-  scratch.taken_kg.assign(footprint.supplies.size(), 0);
+  // Taken from `world.time`, the beginning of the interval or (moving liquid) a time within it: step() lands on the
+  // times at which reservoirs change.
+  scratch.supplies = footprint.supplies;
+  append_supplies(textile.reservoirs, world.time, scratch.supplies);
+  scratch.taken_kg.assign(scratch.supplies.size(), 0);
   const Vec3 gravity{dot(world.gravity, textile.placement.u), dot(world.gravity, textile.placement.v),
                      dot(world.gravity, textile.placement.n)};
-  const WettingReport wetting = step_wetting(*textile.model, textile.contents, footprint.supplies, scratch.taken_kg,
+  const WettingReport wetting = step_wetting(*textile.model, textile.contents, scratch.supplies, scratch.taken_kg,
                                              world.air, gravity, dt);
   report.wetting_iterations += wetting.newton_iterations;
   if (!wetting.converged)
@@ -188,6 +192,9 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   world.ledger.evaporated_kg += wetting.evaporated_kg;
   next_interval = std::min(next_interval, wetting.suggested_step);
 
+  world.ledger.supplied_kg +=
+      book_supplied(textile.reservoirs, world.time, scratch.taken_kg, footprint.supplies.size());
+  scratch.taken_kg.resize(footprint.supplies.size());
   book_taken(footprint, scratch.taken_kg, world.liquid.particles, textile.exchange);
   scratch.dead.assign(world.liquid.particles.size(), 0);
   report.absorbed += absorb_particles(world.liquid, footprint, textile.exchange, scratch.dead).particles;
@@ -259,7 +266,9 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
   if (next_drop(world) < world.time + due_slack) emit_sources(world, report);
   // A drop is born at its own time: no step passes over it. One that waits for its place tries again at every step.
   const Real drop_in = next_drop(world) - world.time;
-  const Real allowed = drop_in >= due_slack ? std::min(longest, drop_in) : longest;
+  Real allowed = drop_in >= due_slack ? std::min(longest, drop_in) : longest;
+  for (const Textile& textile : world.textiles)
+    allowed = std::min(allowed, next_change(textile.reservoirs, world.time) - world.time);
 
   const bool moving = world.liquid.particles.size() > 0 && !pace.resting;
   if (moving) {

@@ -42,6 +42,7 @@ struct StepScratch {
   std::vector<Shape> sheets;
   std::vector<Wall> walls;
   std::vector<std::vector<float>> saturation;  // per textile and node, for the face's contact angle
+  std::vector<FaceSupply> supplies;  // of footprint and reservoirs
   std::vector<Real> taken_kg;
   std::vector<std::uint8_t> dead;
   std::vector<ParticleHit> hits;

@@ -9,6 +9,7 @@
 #include "imbibe/coupling/contact.h"
 #include "imbibe/coupling/exchange_state.h"
 #include "imbibe/coupling/face_map.h"
+#include "imbibe/coupling/reservoir.h"
 #include "imbibe/fabric/fabric.h"
 #include "imbibe/geometry/shapes.h"
 #include "imbibe/liquid/liquid_step.h"
@@ -35,6 +36,7 @@ struct Textile {
   std::shared_ptr<const FaceMap> faces;       // nodes by place, for the exchange with liquid on the faces
   std::shared_ptr<const YarnContactIndex> yarn_boxes;  // for the swept contact of particles with yarns
   ContactParams contact;
+  std::vector<Reservoir> reservoirs;
   Contents contents;
   ExchangeState exchange;
 };
@@ -56,7 +58,7 @@ struct Pace {
 // = initial + supplied.
 struct Ledger {
   Real initial_kg = 0;     // sorbed and other water in the textiles at the start
-  Real supplied_kg = 0;    // by sources
+  Real supplied_kg = 0;    // by sources and reservoirs, less what reservoirs took back
   Real evaporated_kg = 0;  // to the air; negative when the fibres took vapour up on balance
   Real left_kg = 0;        // particles that left the domain
 };
