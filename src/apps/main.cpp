@@ -48,6 +48,7 @@ int main(int count, char** words) {
   add_fabric_command(app, context);
   add_render_command(app, context);
   add_report_command(app, context);
+  add_verify_command(app, context);
   try {
     app.parse(count, words);
     return context.exit_code;

@@ -1,0 +1,16 @@
+// The list of all cases.
+#include "imbibe/verify/families.h"
+
+namespace imbibe::verify {
+
+const std::vector<Case>& all_cases() {
+  static const std::vector<Case> cases = [] {
+    std::vector<Case> all;
+    add_capillaries(all);
+    add_yarn_transport(all);
+    return all;
+  }();
+  return cases;
+}
+
+}  // namespace imbibe::verify
