@@ -48,7 +48,7 @@ TEST(FaceMap, FindsEveryNodeWithinReach) {
       return std::hypot(c.x - x, c.y - y) < map.reach;
     };
     for (Index k = 0; k < fabric.network.nodes(); ++k) all += within(k);
-    map.near(x, y, [&](Index k) { found += within(k); });
+    map.near(x, y, true, [&](Index k) { found += within(k); });
     EXPECT_EQ(found, all);
   }
 }

@@ -53,18 +53,24 @@ FaceMap build_face_map(const YarnNetwork& network, Real particle_spacing) {
   map.bins_x = static_cast<int>((b.x1 - b.x0) / map.bin) + 1;
   map.bins_y = static_cast<int>((b.y1 - b.y0) / map.bin) + 1;
 
+  map.on_upper.resize(nodes);
+  map.on_lower.resize(nodes);
+  for (std::size_t k = 0; k < nodes; ++k)
+    map.on_upper[k] = network.on_face(k, true), map.on_lower[k] = network.on_face(k, false);
+  const auto has_face = [&](std::size_t k) { return map.on_upper[k] || map.on_lower[k]; };
   std::vector<Index> bin_of(nodes);
   map.first.assign(static_cast<std::size_t>(map.bins_x) * map.bins_y + 1, 0);
   for (std::size_t k = 0; k < nodes; ++k) {
     const Vec3& c = network.node_centre(k);
     const auto i = static_cast<Index>((c.x - map.x0) / map.bin), j = static_cast<Index>((c.y - map.y0) / map.bin);
     bin_of[k] = j * static_cast<Index>(map.bins_x) + i;
-    ++map.first[bin_of[k] + 1];
+    if (has_face(k)) ++map.first[bin_of[k] + 1];
   }
   std::partial_sum(map.first.begin(), map.first.end(), map.first.begin());
-  map.node.resize(nodes);
+  map.node.resize(map.first.back());
   std::vector<Index> next(map.first.begin(), map.first.end() - 1);
-  for (std::size_t k = 0; k < nodes; ++k) map.node[next[bin_of[k]]++] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < nodes; ++k)
+    if (has_face(k)) map.node[next[bin_of[k]]++] = static_cast<Index>(k);
 
   map.face_area.assign(nodes, static_cast<float>(network.pitch_x * network.pitch_y));
   for (std::size_t p = 0; p < network.pores(); ++p)

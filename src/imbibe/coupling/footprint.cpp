@@ -29,7 +29,7 @@ void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Re
   const bool below = p.z < 0;
   const std::size_t begin = f.links.size();
   Real total = 0;
-  map.near(p.x, p.y, [&](Index k) {
+  map.near(p.x, p.y, !below, [&](Index k) {
     const Vec3& c = network.node_centre(k);
     const Real w = face_kernel(std::hypot(p.x - c.x, p.y - c.y), map.reach);
     if (w <= 0) return;
@@ -94,13 +94,15 @@ void set_pressures(Real head, const ExchangeState& exchange, Footprint& f) {
   for (FootprintPatch& patch : f.patches) patch.pressure = std::clamp(exchange.normal_force / area, 0.0, head);
 }
 
-void add_waiting_film(const Liquid& liquid, const FaceMap& map, const ExchangeState& exchange, Footprint& f) {
+// What waits lies on the lower face of the sheet where that is the node's own (release.h).
+void add_waiting_film(const Liquid& liquid, const FaceMap& map, bool face_up, const ExchangeState& exchange,
+                      Footprint& f) {
   for (Index k = 0; k < exchange.waiting_kg.size(); ++k) {
     const Real kg = exchange.waiting_kg[k];
     if (kg <= 0) continue;
     if (f.supply_of_node[k] == no_index) {
       f.supply_of_node[k] = static_cast<Index>(f.supplies.size());
-      f.supplies.push_back({.node = k});
+      f.supplies.push_back({.node = k, .from_below = face_up ? map.on_lower[k] != 0 : map.on_upper[k] == 0});
       f.supply_patch.push_back(no_index);
     }
     FaceSupply& supply = f.supplies[f.supply_of_node[k]];
@@ -142,7 +144,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Plac
     f.supplies[s].wetted_share = std::min(f.supplies[s].wetted_share, 1.0);
     f.supplies[s].pressure = f.patches[f.supply_patch[s]].pressure;
   }
-  add_waiting_film(liquid, map, exchange, f);
+  add_waiting_film(liquid, map, dot(gravity, placement.n) <= 0, exchange, f);
 }
 
 }  // namespace imbibe

@@ -50,17 +50,18 @@ class NearFaces {
   std::vector<Place> places_;
 };
 
-// Waiting mass of the nodes within reach of `centre`.
-Real waiting_near(const FaceMap& map, const Vec3& centre, const ExchangeState& exchange) {
+// Waiting mass of the nodes of a face within reach of `centre`.
+Real waiting_near(const FaceMap& map, const Vec3& centre, bool upper, const ExchangeState& exchange) {
   Real sum = 0;
-  map.near(centre.x, centre.y, [&](Index k) { sum += exchange.waiting_kg[k]; });
+  map.near(centre.x, centre.y, upper, [&](Index k) { sum += exchange.waiting_kg[k]; });
   return sum;
 }
 
 // Takes `share` of what waits and moves at the nodes near `centre`; returns the momentum taken.
-Real take_near(const FaceMap& map, const Vec3& centre, Real share, std::vector<Real>& momentum, ExchangeState& exchange) {
+Real take_near(const FaceMap& map, const Vec3& centre, bool upper, Real share, std::vector<Real>& momentum,
+               ExchangeState& exchange) {
   Real taken = 0;
-  map.near(centre.x, centre.y, [&](Index k) {
+  map.near(centre.x, centre.y, upper, [&](Index k) {
     exchange.waiting_kg[k] -= share * exchange.waiting_kg[k];
     taken += share * momentum[k];
     momentum[k] -= share * momentum[k];
@@ -85,35 +86,49 @@ ReleaseReport release_particles(const YarnNetwork& network, const Placement& pla
                                 std::span<const ReleasedLiquid> released, const Vec3& gravity, const SolidAt& solid_at,
                                 ExchangeState& exchange, Liquid& liquid) {
   ReleaseReport report;
-  for (const ReleasedLiquid& r : released) exchange.waiting_kg[r.node] += r.kg;
+  const bool upper_first = dot(gravity, placement.n) > 0;
+  // A node between other layers (its fibres swelled) gives off through the layer on the lower face.
+  const auto at_face = [&](Index node) {
+    if (map.on_upper[node] || map.on_lower[node]) return node;
+    const std::size_t alike = network.is_pore(node) ? network.pores() : network.segments();
+    const std::size_t per_layer = alike / static_cast<std::size_t>(network.layers);
+    const int layers_off = (upper_first ? 0 : network.layers - 1) - network.layer_of(node);
+    return static_cast<Index>(static_cast<std::ptrdiff_t>(node) + layers_off * static_cast<std::ptrdiff_t>(per_layer));
+  };
+  // Liquid waits on the lower face, where the node has it.
+  const auto waits_above = [&](Index node) { return upper_first ? map.on_upper[node] != 0 : map.on_lower[node] == 0; };
+  for (const ReleasedLiquid& r : released) exchange.waiting_kg[at_face(r.node)] += r.kg;
   if (liquid.particle_mass <= 0) return report;  // a scene without free liquid: what comes out waits on the face
   const Real mass = liquid.particle_mass, dx = liquid.spacing(), density = liquid.kind.density;
   std::vector<Index> full;  // nodes about which a particle's mass waits, most first
   for (Index k = 0; k < exchange.waiting_kg.size(); ++k)
-    if (exchange.waiting_kg[k] > 0 && waiting_near(map, network.node_centre(k), exchange) >= mass) full.push_back(k);
+    if (exchange.waiting_kg[k] > 0 && waiting_near(map, network.node_centre(k), waits_above(k), exchange) >= mass)
+      full.push_back(k);
   if (full.empty()) return report;
   std::stable_sort(full.begin(), full.end(),
                    [&](Index a, Index b) { return exchange.waiting_kg[a] > exchange.waiting_kg[b]; });
   // What leaves now has its speed; the greatest excess says whether the other face opens too.
   std::vector<Real> momentum(exchange.waiting_kg.size(), 0), excess(exchange.waiting_kg.size(), 0);
   for (const ReleasedLiquid& r : released) {
-    momentum[r.node] += r.kg * release_speed(r.excess_pressure, density, r.flow, mouth_area(network, r.node));
-    excess[r.node] = std::max(excess[r.node], r.excess_pressure);
+    const Index k = at_face(r.node);
+    momentum[k] += r.kg * release_speed(r.excess_pressure, density, r.flow, mouth_area(network, k));
+    excess[k] = std::max(excess[k], r.excess_pressure);
   }
   NearFaces near(liquid, network, placement, map);
-  const Real lower = dot(gravity, placement.n) > 0 ? 1 : -1;
   const Real across = density * std::abs(dot(gravity, placement.n)) * network.thickness;  // Pa, from face to face
   for (const Index k : full) {
     const Vec3& centre = network.node_centre(k);
-    const Real present = waiting_near(map, centre, exchange);
+    const bool above = waits_above(k);
+    const Real present = waiting_near(map, centre, above, exchange);
     if (present < mass) continue;
     const auto place_at = [&](Real side) { return Vec3{centre.x, centre.y, side * (0.5 * network.thickness + 0.5 * dx)}; };
-    Real side = lower;
-    const bool closed = solid_at && solid_at(placement.to_world(place_at(side)));
-    if (closed || (!near.is_free(place_at(side)) && excess[k] >= across)) side = -side;
+    const auto closed = [&](Real side) { return solid_at && solid_at(placement.to_world(place_at(side))); };
+    Real side = above ? 1 : -1;
+    const bool has_other = map.on_upper[k] && map.on_lower[k];
+    if (has_other && (closed(side) || (!near.is_free(place_at(side)) && excess[k] >= across))) side = -side;
     const Vec3 place = place_at(side), world = placement.to_world(place);
-    if (!near.is_free(place) || (side != lower && solid_at && solid_at(world))) continue;
-    const Vec3 velocity = (side * take_near(map, centre, mass / present, momentum, exchange) / mass) * placement.n;
+    if (!near.is_free(place) || closed(side)) continue;
+    const Vec3 velocity = (side * take_near(map, centre, above, mass / present, momentum, exchange) / mass) * placement.n;
     add_particle(liquid, world, velocity);
     near.add(place);
     ++report.particles;

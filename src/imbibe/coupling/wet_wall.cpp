@@ -18,7 +18,7 @@ Wall wet_wall(const Shape& shape, const YarnNetwork& network, const Placement& p
   wall.angles_at = [&network, &placement, &map, saturation](const Vec3& world) {
     const Vec3 p = placement.to_sheet(world);
     Real advancing = 0, receding = 0, weight = 0;
-    map.near(p.x, p.y, [&](Index k) {
+    map.near(p.x, p.y, p.z >= 0, [&](Index k) {
       const Vec3& c = network.node_centre(k);
       const Real w = face_kernel(std::hypot(p.x - c.x, p.y - c.y), map.reach);
       advancing += w * cos_wet_face(map.cos_advancing[k], saturation[k]);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "imbibe/core/quantity.h"
+#include "imbibe/fabric/layers.h"
 #include "imbibe/fabric/weaving.h"
 #include "imbibe/fabric/wif.h"
 
@@ -60,6 +61,7 @@ struct Plan {
   std::string weave_name;
   std::vector<YarnType> types;
   FamilyPlan warp, weft;
+  std::vector<const Fibre*> layer_fibre;  // of every layer from above; nullptr: as described
 };
 
 class Planner {
@@ -73,6 +75,8 @@ class Planner {
     plan_family(spec_.warp, wif_ ? &wif_->warp : nullptr, "warp", plan_.warp);
     plan_family(spec_.weft, wif_ ? &wif_->weft : nullptr, "weft", plan_.weft);
     for (std::size_t i = 0; i < spec_.stripes.size(); ++i) add_stripe(i);
+    for (std::size_t i = 0; i < spec_.layers.size(); ++i) add_layers(i);
+    if (plan_.layer_fibre.empty()) plan_.layer_fibre = {nullptr};
     return std::move(plan_);
   }
 
@@ -180,6 +184,16 @@ class Planner {
                               static_cast<std::size_t>(std::max(stripe.repeat, 0)), type});
   }
 
+  void add_layers(std::size_t i) {
+    const LayerSpec& layer = spec_.layers[i];
+    const std::string name = fmt::format("layers[{}]", i);
+    if (layer.count < 1) problem(name + ".count", fmt::format("{} is below 1", layer.count));
+    const FibreRecord* record = layer.fibre.empty() ? nullptr : find_fibre(library_, layer.fibre);
+    if (!layer.fibre.empty() && record == nullptr) problem(name + ".fibre", unknown_fibre_message(library_, layer.fibre));
+    plan_.layer_fibre.insert(plan_.layer_fibre.end(), static_cast<std::size_t>(std::clamp(layer.count, 1, 64)),
+                             record != nullptr ? &record->fibre : nullptr);
+  }
+
   const FabricSpec& spec_;
   const FibreLibrary& library_;
   const std::string& key_;
@@ -263,11 +277,12 @@ Real wanted_scale(const Plan& plan, const FabricSpec& spec) {
 void check_counts(const Plan& plan, const FabricSpec& spec, Real scale, const std::string& key,
                   std::vector<Problem>& problems) {
   const double ends = count_yarns(plan.warp, spec.size[0], scale), picks = count_yarns(plan.weft, spec.size[1], scale);
-  const double points = (2 * ends * picks) * spec.points_per_segment + ends + picks;
-  if (std::max(points, 3 * ends * picks) < most_nodes) return;
+  const auto layers = static_cast<double>(plan.layer_fibre.size());
+  const double points = layers * ((2 * ends * picks) * spec.points_per_segment + ends + picks);
+  if (std::max(points, layers * 3 * ends * picks) < most_nodes) return;
   problems.push_back(Problem{"", 0, 0, joined(key, "size"),
                              fmt::format("{:.0f} ends x {:.0f} picks are {:.3g} segments with {:.3g} points: more than "
-                                         "{:.3g} cannot be numbered", ends, picks, 2 * ends * picks, points, most_nodes)});
+                                         "{:.3g} cannot be numbered", ends, picks, layers * 2 * ends * picks, points, most_nodes)});
 }
 
 void check_thickness(const Layout& layout, const std::string& key, const char* name, std::vector<Problem>& problems) {
@@ -279,6 +294,31 @@ void check_thickness(const Layout& layout, const std::string& key, const char* n
                                fmt::format("a slab of {} is thinner than its thickest yarn, {}",
                                            format_quantity(*layout.thickness, "m", "mm"),
                                            format_quantity(thickest, "m", "mm"))});
+}
+
+// Crowns that rest on each other cannot be nearer than the yarns are thick.
+void check_layers(const Layout& layout, std::size_t layers, const std::string& key, std::vector<Problem>& problems) {
+  const Real yarns = layout_thickness(layout);
+  if (layers < 2 || !layout.thickness || *layout.thickness >= yarns * (1 - 1e-9)) return;
+  problems.push_back(Problem{"", 0, 0, joined(key, "thickness"),
+                             fmt::format("layers that lie on each other are at least as thick as their yarns reach, {}",
+                                         format_quantity(yarns, "m", "mm"))});
+}
+
+// The layers' own yarns: another fibre in tubes of the same diameter and packing.
+YarnNetwork weave_layers(Layout layout, const std::vector<const Fibre*>& fibres, Real gap, const std::string& key) {
+  const std::vector<YarnType> described = layout.types;
+  std::vector<YarnNetwork> layers;
+  for (const Fibre* fibre : fibres) {
+    layout.types = described;
+    for (YarnType& type : layout.types) {
+      if (fibre == nullptr) continue;
+      type.fibre = *fibre;
+      type.linear_density = pi * type.radius * type.radius * type.packing * fibre->density;
+    }
+    layers.push_back(weave_network(layout, key));
+  }
+  return stack_layers(std::move(layers), gap);
 }
 
 void throw_any(std::vector<Problem>& problems) {
@@ -306,14 +346,16 @@ FabricEstimate estimate_fabric(const FabricSpec& spec) {
   const double ends = count_yarns(warp, spec.size[0], 1), picks = count_yarns(weft, spec.size[1], 1);
   out.ends = static_cast<std::size_t>(ends);
   out.picks = static_cast<std::size_t>(picks);
-  out.segments = 2 * ends * picks;
-  out.pores = (ends - 1) * (picks - 1);
-  out.points = out.segments * spec.points_per_segment + ends + picks;
-  out.edges = ends * (picks - 1) + picks * (ends - 1) + ends * picks + 8 * out.pores + (ends - 2) * (picks - 1) +
-              (ends - 1) * (picks - 2);
+  double layers = spec.layers.empty() ? 1 : 0;
+  for (const LayerSpec& layer : spec.layers) layers += layer.count;
+  out.segments = layers * 2 * ends * picks;
+  out.pores = layers * (ends - 1) * (picks - 1);
+  out.points = out.segments * spec.points_per_segment + layers * (ends + picks);
+  out.edges = layers * (ends * (picks - 1) + picks * (ends - 1) + ends * picks + (ends - 2) * (picks - 1) +
+                        (ends - 1) * (picks - 2)) + 8 * out.pores + (layers - 1) * (ends * picks + out.pores / layers);
   out.bytes = out.points * sizeof(Vec3) + out.segments * (sizeof(Index) + sizeof(Vec3) + 2 * sizeof(Real)) +
               out.pores * (sizeof(Vec3) + 5 * sizeof(Real)) + out.edges * sizeof(Edge) +
-              (ends + picks) * (4 * sizeof(Index) + sizeof(Real));
+              layers * (ends + picks) * (4 * sizeof(Index) + sizeof(Real));
   return out;
 }
 
@@ -334,10 +376,11 @@ Fabric build_fabric(const FabricSpec& spec, const FibreLibrary& library, const s
   if (spec.porosity && spec.porosity_by == PorosityBy::thickness)
     layout.thickness = layout_sums(layout).volume_per_area / (1 - *spec.porosity);
   check_thickness(layout, key, spec.thickness ? "thickness" : "porosity", problems);
+  check_layers(layout, plan.layer_fibre.size(), key, problems);
   throw_any(problems);
 
   Fabric fabric;
-  fabric.network = weave_network(layout, key);
+  fabric.network = weave_layers(std::move(layout), plan.layer_fibre, spec.layer_gap, key);
   fabric.numbers = fabric_numbers(fabric.network);
   fabric.draft = std::move(plan.draft);
   fabric.weave_name = std::move(plan.weave_name);

@@ -36,6 +36,19 @@ void describe(V& v, StripeSpec& p) {
   v.group("yarn", p.yarn, "the yarn of the stripe; its density is not used");
 }
 
+// Layers of a textile that lie on each other.
+struct LayerSpec {
+  int count = 1;
+  std::string fibre;  // of all yarns of these layers, with the described diameters and packings; empty: as described
+};
+
+template <class V>
+void describe(V& v, LayerSpec& p) {
+  v.value("count", p.count, {.min = 1, .max = 64, .help = "so many like this"});
+  v.value("fibre", p.fibre,
+          {.help = "fibre of all their yarns, of the same diameter and packing; default: the fibres of warp and weft"});
+}
+
 enum class PorosityBy { thickness, pitch };
 
 struct FabricSpec {
@@ -44,6 +57,8 @@ struct FabricSpec {
   std::vector<std::string> weave_rows;         // rows of 0 and 1 in place of `weave`
   YarnSpec warp, weft;
   std::vector<StripeSpec> stripes;
+  std::vector<LayerSpec> layers;               // from above downwards; none: one layer
+  Real layer_gap = 0;                          // m
   std::optional<Real> thickness;               // m, of the slab whose voids are the pores
   std::optional<Real> areal_mass;              // kg/m2, wanted: both pitches are scaled to reach it
   std::optional<Real> porosity;                // 1, wanted
@@ -64,12 +79,16 @@ void describe(V& v, FabricSpec& p) {
   v.group("warp", p.warp, "the yarns along y");
   v.group("weft", p.weft, "the yarns along x");
   v.list("stripes", p.stripes, "other yarns by index");
+  v.list("layers", p.layers, "several layers of the fabric lying on each other, from above downwards; default: one");
+  v.value("layer_gap", p.layer_gap,
+          {.unit = "m", .shown = "um", .min = 0, .max = 1e-3,
+           .help = "distance of layers that lie on each other, between their highest points; 0: they touch"});
   v.value("thickness", p.thickness,
           {.unit = "m", .shown = "mm", .min = 0, .max = 1, .above_min = true,
-           .help = "thickness of the slab whose voids are the pores; default from the yarns, 2 (r_warp + r_weft)"});
+           .help = "thickness of the slab whose voids are the pores, of one layer; default from the yarns, 2 (r_warp + r_weft)"});
   v.value("areal_mass", p.areal_mass,
           {.unit = "kg/m2", .shown = "g/m2", .min = 0, .max = 100, .above_min = true,
-           .help = "wanted mass per area: both densities are scaled alike to reach it"});
+           .help = "wanted mass per area of one layer: both densities are scaled alike to reach it"});
   v.value("porosity", p.porosity, {.min = 0, .max = 1, .above_min = true, .help = "wanted porosity between the yarns"});
   v.choice("porosity_by", p.porosity_by,
            Choices<PorosityBy>{{"thickness", PorosityBy::thickness}, {"pitch", PorosityBy::pitch}},

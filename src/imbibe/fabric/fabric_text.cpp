@@ -76,6 +76,10 @@ void add_families(const Fabric& fabric, Table& table) {
 void add_sheet(const Fabric& fabric, Table& table) {
   const FabricNumbers& n = fabric.numbers;
   table.text += "sheet\n";
+  if (fabric.network.layers > 1) {
+    table.line("layers lying on each other", fabric.network.layers, "");
+    table.line("crowns that touch between them", static_cast<Real>(fabric.network.face_contacts.size()), "");
+  }
   table.line("areal mass", 1e3 * n.areal_mass, "g/m2");
   const bool set = std::abs(n.thickness / n.geometric_thickness - 1) > 1e-9;
   table.line("thickness", 1e3 * n.thickness, "mm",

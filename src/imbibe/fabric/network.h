@@ -4,7 +4,8 @@
 //
 // Sheet coordinates: weft yarns run along x, warp yarns along y, the face is +z, the mid-plane is z = 0 and the
 // sheet's centre is the origin. `Placement` (below) puts the sheet into the world.
-// Node numbers: segments 0 .. segments-1 (yarn by yarn, in order along the yarn), then pores.
+// Node numbers: segments 0 .. segments-1 (yarn by yarn, in order along the yarn), then pores. A sheet of several layers
+// (layers.h) has those of its upper layer first, both among the segments and among the pores.
 #pragma once
 
 #include <cstdint>
@@ -35,12 +36,19 @@ enum class EdgeKind : std::uint8_t {
   along_yarn,    // segment - next segment of the same yarn
   crossing,      // warp segment - weft segment that touch at a crossing
   segment_pore,  // segment - pore beside it
-  pore_pore,     // neighbouring pores in the plane, over a yarn
+  pore_pore,     // neighbouring pores in the plane, over a yarn; or facing pores of two layers
+  face_back,     // segments of two layers whose crowns touch
 };
 
 struct Edge {
   Index a = 0, b = 0;  // nodes
   EdgeKind kind = EdgeKind::along_yarn;
+};
+
+// Where the crowns of two layers touch: the area within which their gap is below h is area_per_height (h - gap).
+struct FaceContact {
+  Real gap = 0;              // m, least distance of the two surfaces
+  Real area_per_height = 0;  // m
 };
 
 // Position and attitude of the flat sheet in the world: world = origin + x*u + y*v + z*n.
@@ -54,7 +62,9 @@ struct Placement {
 struct YarnNetwork {
   // Sheet
   Real size_x = 0, size_y = 0;    // m
-  Real thickness = 0;             // m, t: default 2 (r_warp + r_weft)
+  Real thickness = 0;             // m, of all layers; of one: t, default 2 (r_warp + r_weft)
+  int layers = 1;                 // lying on each other, the first uppermost
+  Real layer_gap = 0;             // m, between the slabs of two layers
   Real pitch_x = 0, pitch_y = 0;  // m, mean distance of neighbouring warp yarns (along x) and weft yarns (along y)
   std::vector<YarnType> yarn_types;
 
@@ -79,6 +89,7 @@ struct YarnNetwork {
   std::vector<Real> pore_area;            // m2, projected cell area p_x p_y that belongs to the pore
 
   std::vector<Edge> edges;
+  std::vector<FaceContact> face_contacts;  // of the edges face_back, which are the last ones, in their order
 
   std::size_t segments() const { return segment_yarn.size(); }
   std::size_t pores() const { return pore_centre.size(); }
@@ -86,6 +97,17 @@ struct YarnNetwork {
   bool is_pore(std::size_t node) const { return node >= segments(); }
   const YarnType& type_of_segment(std::size_t s) const { return yarn_types[yarn_type[segment_yarn[s]]]; }
   Family family_of_segment(std::size_t s) const { return yarn_family[segment_yarn[s]]; }
+  Real layer_thickness() const { return (thickness - (layers - 1) * layer_gap) / layers; }  // m, t of one layer
+  // m, the mid-plane of a layer.
+  Real layer_height(int layer) const {
+    return (0.5 * (layers - 1) - layer) * (layer_thickness() + layer_gap);
+  }
+  int layer_of(std::size_t node) const {
+    const std::size_t per_layer = (is_pore(node) ? pores() : segments()) / static_cast<std::size_t>(layers);
+    return layers == 1 ? 0 : static_cast<int>((is_pore(node) ? node - segments() : node) / per_layer);
+  }
+  // Whether liquid on the upper (z > 0) or lower face of the sheet touches the node.
+  bool on_face(std::size_t node, bool upper) const { return layer_of(node) == (upper ? 0 : layers - 1); }
   const Vec3& node_centre(std::size_t node) const {
     return is_pore(node) ? pore_centre[node - segments()] : segment_centre[node];
   }

@@ -100,8 +100,9 @@ FabricNumbers fabric_numbers(const YarnNetwork& net) {
   out.total_porosity =
       out.porosity + (out.warp.capillary_volume_per_area + out.weft.capillary_volume_per_area) / net.thickness;
   // Seed A's formula knows one kind of fibre on a square: means of both families stand for it.
-  const std::size_t yarns = out.warp.yarns + out.weft.yarns;
-  const Real share = static_cast<Real>(out.warp.yarns) / static_cast<Real>(yarns);
+  const auto layers = static_cast<std::size_t>(net.layers);  // both formulas know one
+  const std::size_t yarns = (out.warp.yarns + out.weft.yarns) / layers;
+  const Real share = static_cast<Real>(out.warp.yarns / layers) / static_cast<Real>(yarns);
   const Real radius = share * out.warp.mean_radius + (1 - share) * out.weft.mean_radius;
   const Real side = std::sqrt(out.area);
   out.porosity_as_printed =
@@ -116,7 +117,8 @@ FabricNumbers fabric_numbers(const YarnNetwork& net) {
   out.storage_radius = storage_radius(out.porosity, mean_of(net.pore_area) * static_cast<Real>(net.pores()), net.pores());
   out.throat_radius = mean_of(net.pore_throat);
   out.radius_as_printed =
-      pore_radius_as_printed(out.porosity, out.area * net.thickness, radius, out.warp.yarns, out.weft.yarns);
+      pore_radius_as_printed(out.porosity, out.area * net.layer_thickness(), radius, out.warp.yarns / layers,
+                             out.weft.yarns / layers);
   return out;
 }
 

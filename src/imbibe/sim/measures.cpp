@@ -46,7 +46,7 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
 
   TextileMeasures m;
   Range along_warp, along_weft;
-  std::size_t wet_segments = 0;
+  std::vector<std::size_t> wet_segments(static_cast<std::size_t>(network.layers), 0);
   Real yarn_sum = 0, pore_sum = 0, pore_volume = 0;
   for (std::size_t node = 0; node < model.nodes(); ++node) {
     const Real s = saturations[node];
@@ -63,13 +63,14 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
     along_warp.include(network.node_centre(node).y);
     along_weft.include(network.node_centre(node).x);
     if (node < model.segments) {
-      ++wet_segments;
+      ++wet_segments[static_cast<std::size_t>(network.layer_of(node))];
     } else {
       m.wet_pore_area += network.pore_area[node - model.segments];
     }
   }
   if (model.segments > 0) {
-    m.wet_area = network.size_x * network.size_y * static_cast<Real>(wet_segments) / static_cast<Real>(model.segments);
+    const auto most = static_cast<Real>(*std::max_element(wet_segments.begin(), wet_segments.end()));
+    m.wet_area = network.size_x * network.size_y * most * network.layers / static_cast<Real>(model.segments);
   }
   if (m.yarn_volume > 0) m.mean_saturation = yarn_sum / m.yarn_volume;
   if (pore_volume > 0) m.pore_saturation = pore_sum / pore_volume;

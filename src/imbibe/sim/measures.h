@@ -29,7 +29,8 @@ void describe(V& v, MeasureParams& p) {
 }
 
 struct TextileMeasures {
-  Real wet_area = 0;         // m2: every segment stands for an equal share of the sheet; the sum over wet ones
+  Real wet_area = 0;         // m2: every segment stands for an equal share of the sheet; the sum over wet ones, of the
+                             // layer where it is largest
   Real wet_pore_area = 0;    // m2: cells of wet pores
   Real extent_warp = 0;      // m: greatest distance of wet nodes along the warp direction (sheet y), centre to centre
   Real extent_weft = 0;      // m: along the weft direction (sheet x)

@@ -1,6 +1,7 @@
 #include "imbibe/sim/mechanism.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
@@ -32,6 +33,20 @@ std::string pore_sentence(const WettingModel& model) {
                      *std::min_element(model.pore_breakthrough.begin(), model.pore_breakthrough.end()));
 }
 
+std::string layer_sentence(const Textile& textile) {
+  const YarnNetwork& network = textile.fabric->network;
+  std::vector<std::string> parts(static_cast<std::size_t>(network.layers));
+  std::vector<Real> yarns(parts.size(), 0), pores(parts.size(), 0);
+  for (std::size_t node = 0; node < network.nodes(); ++node)
+    (network.is_pore(node) ? pores : yarns)[static_cast<std::size_t>(network.layer_of(node))] +=
+        textile.contents.liquid_kg[node];
+  for (std::size_t l = 0; l < parts.size(); ++l)
+    parts[l] = fmt::format("{} {:.3g} mg ({:.3g} mg of it in pores)", l == 0 ? "upper layer" : fmt::format("layer {}", l + 1),
+                           1e6 * (yarns[l] + pores[l]), 1e6 * pores[l]);
+  return fmt::format("{}: {}; liquid passes from layer to layer where crowns touch, by the menisci between them.",
+                     textile.name, fmt::join(parts, ", "));
+}
+
 }  // namespace
 
 std::vector<std::string> explain_uptake(const World& world) {
@@ -45,6 +60,7 @@ std::vector<std::string> explain_uptake(const World& world) {
       entry += sentence;
     }
     sentences.push_back(fmt::format("{}: {}. {}", textile.name, entry, pore_sentence(*textile.model)));
+    if (textile.fabric->network.layers > 1) sentences.push_back(layer_sentence(textile));
     const Real force = textile.exchange.normal_force;
     sentences.push_back(fmt::format(
         "{}: {:.3g} mg between fibres, {:.3g} mg in pores, {:.3g} mg in fibre substance (with the regain at the start); "

@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/wetting/face_back.h"
 #include "imbibe/wetting/transport_laws.h"
 
 namespace imbibe {
 namespace {
 
+constexpr Real opened_pore = 0.5;      // saturation from which a rejecting pore no longer holds liquid off
 constexpr Real wet_saturation = 1e-7;  // a node above it belongs to the solved set with its neighbours
 
 using Work = TransportWorkspace;
@@ -33,10 +35,48 @@ Real effective_entry(const WettingModel& m, const Work& w, Index local) {
   return -w.pressure[local] * std::pow(s, 1 / m.size_index[node]);
 }
 
-// The weight of the column from a node down to the lower of its faces, Pa.
-Real face_head(const WettingModel& m, Index node, const Vec3& gravity) {
-  const Real half = 0.5 * m.thickness, z = m.centre[node].z;
-  return m.liquid.density * std::max(gravity.z * (half - z), gravity.z * (-half - z));
+// The weight of the column from a node down to the lower of `faces`, Pa; a node without one gives off nothing.
+Real face_head(const WettingModel& m, Index node, std::uint8_t faces, const Vec3& gravity) {
+  const Real half = 0.5 * m.stack_thickness, z = m.centre[node].z;
+  Real most = -std::numeric_limits<Real>::infinity();
+  if (faces & upper_face) most = gravity.z * (half - z);
+  if (faces & lower_face) most = std::max(most, gravity.z * (-half - z));
+  return faces == 0 ? 0 : m.liquid.density * most;
+}
+
+// Where a node gives off. Liquid that covers a face exchanges with the node as its supply: through the other face then,
+// or through what is left of this one.
+void find_release_faces(const TransportInput& input, Work& w) {
+  const WettingModel& m = *input.model;
+  parallel_for(w.active.size(), [&](std::size_t i) {
+    const Index node = w.active[i];
+    w.face_share[i] = 1;
+    w.face_head[i] = face_head(m, node, m.faces[node], input.gravity);
+  }, transport_tile);
+  for (const FaceSupply& supply : input.supplies) {
+    const Index i = w.local_of[supply.node];
+    if (i == no_index || !(supply.wetted_share > 0)) continue;
+    const std::uint8_t covered = supply.from_below ? lower_face : upper_face;
+    const auto other = static_cast<std::uint8_t>(m.faces[supply.node] & ~covered);
+    if (other != 0) w.face_head[i] = face_head(m, supply.node, other, input.gravity);
+    else w.face_share[i] = 1 - std::min<Real>(1, supply.wetted_share);
+  }
+}
+
+// What a pore's valve to another opens at: a rejecting pore that is still empty must be broken through first.
+Real valve_opening(const WettingModel& m, const Work& w, const WettingEdge& edge, Index local_a, Index local_b) {
+  const auto opening = [&](Index node, Index local) {
+    const std::size_t pore = node - m.segments;
+    const bool shut = !m.pore_wets[pore] && w.old_saturation[local] < opened_pore;
+    return shut ? std::max(edge.valve, m.pore_breakthrough[pore]) : edge.valve;
+  };
+  return std::max(opening(edge.a, local_a), opening(edge.b, local_b));
+}
+
+// How much of its full contact a bridge between two layers has at the higher of its pressures.
+Real bridge_share(const WettingModel& m, const CrownBridge& bridge, Real pressure) {
+  const Real height = bridged_height(m.liquid.surface_tension, bridge.cosines, pressure);
+  return bridged_area(height, bridge.gap, bridge.area_per_height, bridge.most) / bridge.most;
 }
 
 // What the links of a node make of its potential (own_side).
@@ -151,7 +191,7 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
   build_rows(m, w);
   const std::size_t n = w.active.size();
   for (auto* vector : {&w.volume, &w.old_content, &w.old_saturation, &w.saturation, &w.pressure, &w.pressure_slope,
-                       &w.potential, &w.potential_slope, &w.face_head, &w.release, &w.release_slope, &w.residual, &w.change,
+                       &w.potential, &w.potential_slope, &w.face_head, &w.face_share, &w.release, &w.release_slope, &w.residual, &w.change,
                        &w.reached, &w.scale, &w.own_share, &w.own_entry}) {
     vector->assign(n, 0);
   }
@@ -162,8 +202,8 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
     w.old_saturation[i] = w.old_content[i] / w.volume[i];
     w.saturation[i] = w.old_saturation[i];
     w.reached[i] = contents.reached_saturation.empty() ? 0 : contents.reached_saturation[node];
-    w.face_head[i] = face_head(m, node, input.gravity);
   }, transport_tile);
+  find_release_faces(input, w);
   evaluate_nodes(m, w);
   const bool kunzel = m.params.model == TransportModel::kunzel;
   const Real redistribution = kunzel && input.supplies.empty() ? m.params.redistribution_factor : 1;
@@ -173,7 +213,12 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
     const WettingEdge& edge = m.edges[local.edge];
     local.factor = edge.conductance;
     local.head = dot(weight, edge.offset);
+    const bool between_layers = std::abs(edge.offset.z) > 0.5 * m.thickness;
+    if (edge.kind == EdgeKind::pore_pore)
+      local.entry = between_layers ? valve_opening(m, w, edge, local.a, local.b) : edge.valve;
     if (edge.kind == EdgeKind::pore_pore || m.params.model == TransportModel::as_printed) return;
+    if (edge.kind == EdgeKind::face_back)
+      local.factor *= bridge_share(m, m.bridges[edge.contact], std::max(w.pressure[local.a], w.pressure[local.b]));
     const bool upper_is_a = w.pressure[local.a] >= w.pressure[local.b];
     const Index upstream = edge.kind == EdgeKind::segment_pore || upper_is_a ? local.a : local.b;
     local.entry = effective_entry(m, w, upstream);

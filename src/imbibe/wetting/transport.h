@@ -2,8 +2,8 @@
 //
 //   V_i (s_i - s_i^n) + dt [sum_j q_ij - q_supply,i + q_release,i] = 0,   |residual| <= 1e-9 V_i
 //   supply   inflow_i dt = min(law_i(s_i) dt, available_i)                (complementarity, inside the residual)
-//   release  q = T max(p_i + rho |g_n| z - P_open,i, 0) to the face that is lower, z m below the node; and what stands
-//            above s = 1 + delta when the step is done
+//   release  q = T max(p_i + rho |g_n| z - P_open,i, 0) to the lower of the faces that no liquid covers, z m below the
+//            node; and what stands above s = 1 + delta when the step is done
 //
 // V_i m3 held at s = 1 (swelling counted), q_ij m3/s. The laws of q_ij: along_yarn.h, crossing.h, capillary.h, entry.h.
 // Newton's unknown is Y_i(s_i) = s_i + (dt/V_i) C_i u_i(s_i), each node's own side of its equation (C_i the sum of its
@@ -49,7 +49,7 @@ struct TransportWorkspace {
     EdgeKind kind = EdgeKind::along_yarn;
     Real head = 0;                      // Pa, rho g (z_b - z_a) downwards
     Real factor = 0;                    // conductance now (share of a pore's walls that is wetted, D_ww)
-    Real entry = 0;                     // P_e of the curve that the link's potential follows
+    Real entry = 0;                     // P_e of the curve that the link's potential follows; of pores: what opens the valve
     Real flow = 0, slope_a = 0, slope_b = 0;  // m3/s, and per saturation of a and b
   };
   struct LocalSupply {
@@ -62,7 +62,7 @@ struct TransportWorkspace {
   std::vector<char> is_seed;
   std::vector<Index> active;
   std::vector<Real> volume, old_content, old_saturation, saturation, previous, pressure, pressure_slope, potential,
-      potential_slope, face_head, release, release_slope, residual, change, reached, scale, own_share, own_entry;
+      potential_slope, face_head, face_share, release, release_slope, residual, change, reached, scale, own_share, own_entry;
   std::vector<LocalEdge> edges;
   std::vector<Index> row_start, row_edge, row_other;
   std::vector<LocalSupply> supplies;

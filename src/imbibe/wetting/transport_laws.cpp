@@ -25,7 +25,7 @@ void yarn_edge(const WettingModel& m, const Work& w, Work::LocalEdge& local) {
   const Index a = local.a, b = local.b;
   const Real head = local.head;
   const TransportModel law = m.params.model;
-  if (local.kind == EdgeKind::crossing && !m.edges[local.edge].same_material) {
+  if (local.kind != EdgeKind::along_yarn && !m.edges[local.edge].same_material) {
     const WettingEdge& edge = m.edges[local.edge];
     const Index na = w.active[a], nb = w.active[b];
     const Real share = local.factor / edge.conductance;
@@ -153,8 +153,9 @@ void evaluate_nodes(const WettingModel& m, TransportWorkspace& w) {
       }
     }
     const Sloped open = valve(p.value + w.face_head[i], m.open[node]);
-    w.release[i] = m.release_conductance[node] * open.value;
-    w.release_slope[i] = m.release_conductance[node] * open.slope * p.slope;
+    const Real conductance = w.face_share[i] * m.release_conductance[node];
+    w.release[i] = conductance * open.value;
+    w.release_slope[i] = conductance * open.slope * p.slope;
   }, transport_tile);
 }
 
@@ -163,7 +164,7 @@ void evaluate_edges(const WettingModel& m, TransportWorkspace& w) {
     auto& local = w.edges[e];
     if (m.params.model == TransportModel::as_printed) return printed_edge(w, local);
     if (local.kind == EdgeKind::segment_pore) return segment_pore_edge(m, w, local);
-    if (local.kind == EdgeKind::pore_pore) return pore_edge(m.edges[local.edge].valve, w, local);
+    if (local.kind == EdgeKind::pore_pore) return pore_edge(local.entry, w, local);
     yarn_edge(m, w, local);
   }, transport_tile);
 }

@@ -9,6 +9,7 @@
 #include "imbibe/wetting/capillary.h"
 #include "imbibe/wetting/crossing.h"
 #include "imbibe/wetting/entry.h"
+#include "imbibe/wetting/face_back.h"
 #include "imbibe/wetting/isotherm.h"
 #include "imbibe/wetting/swelling.h"
 
@@ -131,8 +132,12 @@ void check_input(const YarnNetwork& network, const WettingLiquid& liquid) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
+int free_faces(const WettingModel& m, std::size_t node) {
+  return (m.faces[node] & upper_face ? 1 : 0) + (m.faces[node] & lower_face ? 1 : 0);
+}
+
 void add_segments(WettingModel& m, const YarnNetwork& network) {
-  Real weight = 0;
+  std::vector<Real> weight(static_cast<std::size_t>(network.layers), 0);
   for (std::size_t s = 0; s < m.segments; ++s) {
     const YarnType& type = network.type_of_segment(s);
     const Index index = network.yarn_type[network.segment_yarn[s]];
@@ -154,9 +159,10 @@ void add_segments(WettingModel& m, const YarnNetwork& network) {
     // From the face to the yarn's middle: half its perimeter over half its radius.
     const Real patch = 0.5 * pi * r * length / (0.5 * r);
     const Real anisotropy = yarn.axial > 0 ? yarn.transverse / yarn.axial : 0;
-    m.release_conductance.push_back(yarn.wets ? yarn.transverse * patch / m.liquid.viscosity : 0);
+    const Real to_face = yarn.wets ? yarn.transverse * patch / m.liquid.viscosity : 0;
+    m.release_conductance.push_back(free_faces(m, s) > 0 ? to_face : 0);
     switch (m.params.model) {
-      case TransportModel::physical: m.supply_conductance.push_back(m.release_conductance.back()); break;
+      case TransportModel::physical: m.supply_conductance.push_back(to_face); break;
       case TransportModel::kunzel:
         m.supply_conductance.push_back(yarn.wets ? yarn.void_share * yarn.diffusivity * anisotropy * patch : 0);
         break;
@@ -166,10 +172,14 @@ void add_segments(WettingModel& m, const YarnNetwork& network) {
     }
     const bool warp = network.family_of_segment(s) == Family::warp;
     m.vapour_area.push_back(length * (warp ? network.pitch_x : network.pitch_y));
-    weight += m.vapour_area.back();
+    weight[static_cast<std::size_t>(network.layer_of(s))] += m.vapour_area.back();
   }
-  // Both faces of the sheet, shared by the segments: a boundary layer of millimetres does not see the gaps.
-  for (Real& area : m.vapour_area) area *= weight > 0 ? 2 * m.area / weight : 0;
+  // The faces that see the air, shared by the segments of their layer: a boundary layer of millimetres does not see the
+  // gaps. Vapour through a covered face, past the other layer, is left out.
+  for (std::size_t s = 0; s < m.segments; ++s) {
+    const Real sum = weight[static_cast<std::size_t>(network.layer_of(s))];
+    m.vapour_area[s] *= sum > 0 ? free_faces(m, s) * m.area / sum : 0;
+  }
 }
 
 void add_pores(WettingModel& m, const YarnNetwork& network, const PoreSurroundings& around) {
@@ -195,11 +205,12 @@ void add_pores(WettingModel& m, const YarnNetwork& network, const PoreSurroundin
     m.size_index.push_back(m.params.pore_size_index);
     m.centre.push_back(network.pore_centre[i]);
     // Half the way from face to face on average.
-    m.release_conductance.push_back(tube_conductance(throat, m.liquid.viscosity, 0.5 * m.thickness));
+    const int faces = free_faces(m, m.segments + i);
+    m.release_conductance.push_back(faces > 0 ? tube_conductance(throat, m.liquid.viscosity, 0.5 * m.thickness) : 0);
     const Real printed = printed_pore_diffusivity(water_self_diffusion, throat, m.params.printed_pore_velocity) *
                          m.pore_mouth.back() / (0.5 * m.thickness);
     m.supply_conductance.push_back(m.params.model == TransportModel::as_printed ? printed : 0);
-    m.vapour_area.push_back(2 * network.pore_area[i]);
+    m.vapour_area.push_back(faces * network.pore_area[i]);
   }
 }
 
@@ -239,6 +250,18 @@ Real transverse_factor(const WettingModel& m, const YarnWetting& yarn) {
   return yarn.axial > 0 ? axial_factor(m, yarn) * yarn.transverse / yarn.axial : 0;
 }
 
+// Facing pores of two layers: both throats, each over half its layer.
+void set_facing_pores(const WettingModel& m, std::size_t a, std::size_t b, WettingEdge& edge) {
+  const auto half = [&](std::size_t pore) {
+    if (m.params.model != TransportModel::as_printed)
+      return tube_conductance(m.pore_throat[pore], m.liquid.viscosity, 0.5 * m.thickness);
+    return printed_pore_diffusivity(water_self_diffusion, m.pore_throat[pore], m.params.printed_pore_velocity) *
+           m.pore_mouth[pore] / (0.5 * m.thickness);
+  };
+  edge.valve = std::max(m.pore_open[a], m.pore_open[b]);
+  edge.conductance = 1 / (1 / half(a) + 1 / half(b));
+}
+
 // Sets the conductance; false where no liquid can pass.
 bool set_conductance(const WettingModel& m, const YarnNetwork& network, WettingEdge& edge) {
   const auto yarn_of = [&](Index s) -> const YarnWetting& { return m.yarns[m.segment_type[s]]; };
@@ -250,13 +273,17 @@ bool set_conductance(const WettingModel& m, const YarnNetwork& network, WettingE
     case EdgeKind::along_yarn:
       edge.conductance = along(edge.a, 0.5 * (network.segment_length[edge.a] + network.segment_length[edge.b]));
       break;
-    case EdgeKind::crossing: {
+    case EdgeKind::crossing:
+    case EdgeKind::face_back: {
+      const bool layers = edge.kind == EdgeKind::face_back;
+      const Real factor = layers ? 1 : m.params.crossing_factor;
       const auto link = [&](Index s) {
         const Real r = network.type_of_segment(s).radius;
         const bool printed = m.params.model == TransportModel::as_printed;
         // As printed: eta D over the same distance as along the yarn; crossing_factor 3 stands for eta = 1.
-        if (printed) return m.params.crossing_factor / 3 * along(s, network.segment_length[s]);
-        return m.params.crossing_factor * transverse_factor(m, yarn_of(s)) * contact_patch(r) / contact_distance(r);
+        if (printed) return (layers ? 1 : factor / 3) * along(s, network.segment_length[s]);
+        const Real patch = layers ? m.bridges[edge.contact].most : contact_patch(r);
+        return factor * transverse_factor(m, yarn_of(s)) * patch / contact_distance(r);
       };
       edge.same_material = same_material(m, m.segment_type[edge.a], m.segment_type[edge.b]);
       const Real a = link(edge.a), b = link(edge.b);
@@ -278,6 +305,10 @@ bool set_conductance(const WettingModel& m, const YarnNetwork& network, WettingE
     }
     case EdgeKind::pore_pore: {
       const std::size_t a = edge.a - m.segments, b = edge.b - m.segments;
+      if (network.layer_of(edge.a) != network.layer_of(edge.b)) {
+        set_facing_pores(m, a, b, edge);
+        break;
+      }
       const Vec3 offset = m.centre[edge.b] - m.centre[edge.a];
       const bool in_x = std::abs(offset.x) > std::abs(offset.y);
       const auto& gap = in_x ? network.pore_opening_y : network.pore_opening_x;
@@ -298,12 +329,24 @@ bool set_conductance(const WettingModel& m, const YarnNetwork& network, WettingE
   return edge.conductance > 0;
 }
 
+CrownBridge bridge_of(const WettingModel& m, const YarnNetwork& network, const Edge& edge, const FaceContact& contact) {
+  const Real narrow = std::min(network.type_of_segment(edge.a).radius, network.type_of_segment(edge.b).radius);
+  const auto cosine = [&](Index s) { return m.yarns[m.segment_type[s]].cos_advancing; };
+  return {contact.gap, contact.area_per_height, contact_patch(narrow), cosine(edge.a) + cosine(edge.b)};
+}
+
 void add_edges(WettingModel& m, const YarnNetwork& network) {
-  for (const Edge& given : network.edges) {
+  const std::size_t first_contact = network.edges.size() - network.face_contacts.size();
+  for (std::size_t e = 0; e < network.edges.size(); ++e) {
+    const Edge& given = network.edges[e];
     const bool with_pore = given.kind == EdgeKind::segment_pore || given.kind == EdgeKind::pore_pore;
     if (with_pore && !m.params.pores) continue;
     WettingEdge edge{.a = given.a, .b = given.b, .kind = given.kind};
     if (!with_pore && (m.volume[edge.a] <= 0 || m.volume[edge.b] <= 0)) continue;
+    if (edge.kind == EdgeKind::face_back) {
+      edge.contact = static_cast<Index>(m.bridges.size());
+      m.bridges.push_back(bridge_of(m, network, given, network.face_contacts[e - first_contact]));
+    }
     if (!set_conductance(m, network, edge)) continue;
     edge.offset = m.centre[edge.b] - m.centre[edge.a];
     m.edges.push_back(edge);
@@ -365,12 +408,16 @@ WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams
   m.liquid = liquid;
   m.segments = network.segments();
   m.pores = network.pores();
-  m.thickness = network.thickness;
+  m.thickness = network.layer_thickness();
+  m.stack_thickness = network.thickness;
   m.area = network.size_x * network.size_y;
   for (const YarnType& type : network.yarn_types) {
     m.fibres.push_back(type.fibre);
     m.yarns.push_back(yarn_wetting(type, params, liquid));
   }
+  for (std::size_t node = 0; node < m.nodes(); ++node)
+    m.faces.push_back(static_cast<std::uint8_t>((network.on_face(node, true) ? upper_face : 0) |
+                                                (network.on_face(node, false) ? lower_face : 0)));
   add_segments(m, network);
   add_pores(m, network, surroundings(network, liquid));
   set_yarn_opening(m, network);

@@ -99,6 +99,8 @@ void describe(V& v, WettingParams& p) {
           {.unit = "m/s", .min = 0, .max = 10, .help = "U of eq. 10 in the model as printed"});
 }
 
+inline constexpr std::uint8_t upper_face = 1, lower_face = 2;  // of the sheet, at +z and -z
+
 // One yarn type with the liquid in it.
 struct YarnWetting {
   bool wets = false;         // holds and carries liquid between its fibres
@@ -126,7 +128,15 @@ struct WettingEdge {
   Real conductance = 0;
   Real conductance_b = 0;
   Real valve = 0;     // Pa, P_open of a pore-pore link
+  Index contact = no_index;  // face_back: into WettingModel::bridges
   Vec3 offset{};      // m, centre of b minus centre of a, sheet coordinates
+};
+
+// The contact of two crowns of facing layers (face_back.h).
+struct CrownBridge {
+  Real gap = 0, area_per_height = 0;  // m
+  Real most = 0;      // m2, area that the edge's conductance stands for
+  Real cosines = 0;   // cos theta_a + cos theta_b
 };
 
 struct WettingModel {
@@ -134,7 +144,8 @@ struct WettingModel {
   WettingLiquid liquid;
   std::size_t segments = 0, pores = 0;
   std::size_t nodes() const { return segments + pores; }
-  Real thickness = 0;  // m, also the length of a pore from face to face
+  Real thickness = 0;  // m, of one layer, also the length of a pore from face to face
+  Real stack_thickness = 0;  // m, of all layers
   Real area = 0;       // m2 of the sheet, one face
 
   // Materials
@@ -148,7 +159,8 @@ struct WettingModel {
   std::vector<Real> supply_conductance;   // per node: liquid on the face -> node, units as WettingEdge; pores see
                                           // capillary.h (a tube) except in the model as printed
   std::vector<Real> release_conductance;  // m3/(Pa s), per node: over-full node -> its faces
-  std::vector<Real> vapour_area;      // m2, per node, both faces
+  std::vector<Real> vapour_area;      // m2, per node, of its faces that see the air
+  std::vector<std::uint8_t> faces;    // per node: upper_face, lower_face, both; 0 between other layers
 
   // Pores
   std::vector<Real> pore_throat, pore_entry, pore_entry_receding, pore_open, pore_breakthrough;
@@ -162,6 +174,7 @@ struct WettingModel {
 
   // Edges and, for each node, its entries in them (fixed compressed rows)
   std::vector<WettingEdge> edges;
+  std::vector<CrownBridge> bridges;
   std::vector<Index> row_start;       // nodes + 1
   std::vector<Index> row_edge, row_other;
   // All nodes by place, pitch row after pitch row and along each row: neighbours in the cloth stand close together in
