@@ -216,5 +216,14 @@ TEST(Swelling, TheConditionedYarnHasItsDescribedRadius) {
   EXPECT_DOUBLE_EQ(swollen_area(0.4, 0.28, 0, 0.28), 1.4);
 }
 
+TEST(Sorption, ThePrintedLawGrowsEvenlyStopsAtTheRuleAndNeverReturns) {
+  const Real rate = 4e-14 / (10.5e-6 * 10.5e-6), surface = 0.33;  // wool
+  EXPECT_NEAR(printed_regain(0.1, surface, rate, 100), 0.1 + surface * rate * 100, 1e-15);
+  // Its rate does not fall towards W_s: from half full as from empty.
+  EXPECT_NEAR(printed_regain(0.1, surface, rate, 10) - 0.1, printed_regain(0.2, surface, rate, 10) - 0.2, 1e-15);
+  EXPECT_EQ(printed_regain(0.1, surface, rate, 1e6), surface);
+  EXPECT_EQ(printed_regain(0.3, 0.1, rate, 1e6), 0.3);
+}
+
 }  // namespace
 }  // namespace imbibe

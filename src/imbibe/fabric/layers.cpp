@@ -19,8 +19,28 @@ void append_starts(std::vector<Index>& to, const std::vector<Index>& from) {
   for (const Index first : from) to.push_back(base + first);
 }
 
+bool same_yarn(const YarnType& a, const YarnType& b) {
+  return a.fibre.name == b.fibre.name && a.fibre.radius == b.fibre.radius && a.radius == b.radius &&
+         a.packing == b.packing && a.linear_density == b.linear_density && a.monofilament == b.monofilament &&
+         a.tortuosity_squared == b.tortuosity_squared && a.absorption_coefficient == b.absorption_coefficient &&
+         a.colour == b.colour;
+}
+
+// The number of each of a layer's yarn types in the stack; those that an upper layer has too are shared.
+std::vector<Index> join_types(YarnNetwork& net, const YarnNetwork& layer) {
+  const std::size_t before = net.yarn_types.size();
+  std::vector<Index> number;
+  for (const YarnType& type : layer.yarn_types) {
+    const auto end = net.yarn_types.begin() + static_cast<std::ptrdiff_t>(before);
+    const auto same = std::find_if(net.yarn_types.begin(), end, [&](const YarnType& t) { return same_yarn(t, type); });
+    number.push_back(static_cast<Index>(same != end ? same - net.yarn_types.begin() : std::ssize(net.yarn_types)));
+    if (same == end) net.yarn_types.push_back(type);
+  }
+  return number;
+}
+
 void append_layer(YarnNetwork& net, const YarnNetwork& layer, Real height) {
-  const auto types = static_cast<Index>(net.yarn_types.size()), yarns = static_cast<Index>(net.yarn_family.size());
+  const auto yarns = static_cast<Index>(net.yarn_family.size());
   const auto at = [height](const std::vector<Vec3>& places) {
     std::vector<Vec3> moved = places;
     for (Vec3& p : moved) p.z += height;
@@ -31,9 +51,9 @@ void append_layer(YarnNetwork& net, const YarnNetwork& layer, Real height) {
     for (Index& n : moved) n += by;
     return moved;
   };
-  append(net.yarn_types, layer.yarn_types);
+  const std::vector<Index> type = join_types(net, layer);
   append(net.yarn_family, layer.yarn_family);
-  append(net.yarn_type, shifted(layer.yarn_type, types));
+  for (const Index t : layer.yarn_type) net.yarn_type.push_back(type[t]);
   append_starts(net.yarn_first_segment, layer.yarn_first_segment);
   append_starts(net.yarn_first_point, layer.yarn_first_point);
   append(net.points, at(layer.points));

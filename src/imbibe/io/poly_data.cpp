@@ -38,7 +38,7 @@ PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& satu
   data.points.reserve(count);
   for (const Vec3& p : network.points) data.points.push_back(Vec3f(textile.placement.to_world(p)));
   std::vector<float> saturation, sorbed, liquid, regain;
-  std::vector<std::int32_t> yarn, family;
+  std::vector<std::int32_t> yarn, family, layer;
   for (std::vector<float>* values : {&saturation, &sorbed, &liquid, &regain}) values->reserve(count);
   yarn.reserve(count), family.reserve(count);
   const auto per_segment = static_cast<std::size_t>(network.points_per_segment);
@@ -54,6 +54,7 @@ PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& satu
       regain.push_back(static_cast<float>(node_regain(*textile.model, contents, s)));
       yarn.push_back(static_cast<std::int32_t>(y));
       family.push_back(static_cast<std::int32_t>(network.yarn_family[y]));
+      if (network.layers > 1) layer.push_back(network.layer_of(s));
     }
   }
   if (!data.line_start.empty()) data.line_start.push_back(static_cast<std::int32_t>(count));
@@ -63,6 +64,7 @@ PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& satu
   data.add("regain", std::move(regain));
   data.add("yarn", std::move(yarn));
   data.add("family", std::move(family));
+  if (network.layers > 1) data.add("layer", std::move(layer));  // 0 = uppermost
   return data;
 }
 
@@ -70,14 +72,17 @@ PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturat
   const YarnNetwork& network = textile.fabric->network;
   PolyData data;
   std::vector<float> saturation, liquid;
+  std::vector<std::int32_t> layer;
   for (std::size_t p = 0; p < network.pores(); ++p) {
     const std::size_t node = network.segments() + p;
     data.points.push_back(Vec3f(textile.placement.to_world(network.pore_centre[p])));
     saturation.push_back(static_cast<float>(saturations[node]));
     liquid.push_back(static_cast<float>(textile.contents.liquid_kg[node]));
+    if (network.layers > 1) layer.push_back(network.layer_of(node));
   }
   data.add("saturation", std::move(saturation));
   data.add("pore_kg", std::move(liquid));
+  if (network.layers > 1) data.add("layer", std::move(layer));
   return data;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace imbibe {
@@ -16,9 +17,15 @@ std::string entry_sentence(const Textile& textile, std::size_t type) {
   const std::string who = fmt::format("{} at {:.0f}°", yarn.fibre.name, angle);
   if (yarn.monofilament)
     return fmt::format("{}: a monofilament, which holds no liquid between fibres", who);
-  if (wetting.wets)
-    return fmt::format("{}: fills by itself, the voids between its fibres suck with {:.2g} kPa at entry", who,
-                       1e-3 * wetting.entry);
+  if (wetting.wets) {
+    // What a single such yarn, fed at one end, takes in the first second, as a length of full yarn.
+    const Real reach = std::sqrt(sorptivity_squared(wetting.axial, wetting.entry, textile.model->liquid.viscosity,
+                                                    wetting.void_share, textile.model->params.yarn_size_index));
+    const std::string sucks = fmt::format("{}: fills by itself, the voids between its fibres suck with {:.2g} kPa at entry",
+                                          who, 1e-3 * wetting.entry);
+    if (textile.model->params.model != TransportModel::physical) return sucks;
+    return fmt::format("{} and fill {:.2g} mm of a single yarn in its first second", sucks, 1e3 * reach);
+  }
   return fmt::format("{}: no capillary entry between its fibres", who);
 }
 
@@ -62,10 +69,13 @@ std::vector<std::string> explain_uptake(const World& world) {
     sentences.push_back(fmt::format("{}: {}. {}", textile.name, entry, pore_sentence(*textile.model)));
     if (textile.fabric->network.layers > 1) sentences.push_back(layer_sentence(textile));
     const Real force = textile.exchange.normal_force;
+    Real room = 0;
+    for (std::size_t s = 0; s < textile.model->segments; ++s)
+      room += textile.model->liquid.density * textile.model->volume[s];
     sentences.push_back(fmt::format(
-        "{}: {:.3g} mg between fibres, {:.3g} mg in pores, {:.3g} mg in fibre substance (with the regain at the start); "
+        "{}: {:.3g} mg between fibres (room for {:.3g}), {:.3g} mg in pores, {:.3g} mg in fibre substance (with the regain at the start); "
         "{} particles were taken whole, {} came back; the liquid pressed with {:.3g} mN at the end.",
-        textile.name, 1e6 * total_yarn_kg(*textile.model, textile.contents),
+        textile.name, 1e6 * total_yarn_kg(*textile.model, textile.contents), 1e6 * room,
         1e6 * total_pore_kg(*textile.model, textile.contents),
         1e6 * total_sorbed_kg(*textile.model, textile.contents), textile.exchange.absorbed_particles,
         textile.exchange.released_particles, 1e3 * force));

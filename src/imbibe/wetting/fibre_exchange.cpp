@@ -30,6 +30,7 @@ Real regain_after(const WettingModel& m, Contents& contents, std::size_t s, Real
     return mean_regain(m.shells, result);
   }
   const Real regain = node_regain(m, contents, s);
+  if (m.params.sorption == SorptionModel::as_printed) return printed_regain(regain, surface, yarn.shell_rate, dt);
   return regain + (surface - regain) * sorbed_share(yarn.sorption_rate, dt);
 }
 
@@ -134,6 +135,7 @@ Real exchange_vapour(const WettingModel& m, Contents& contents, const Air& air, 
   const auto wet_share = [&](std::size_t s) {
     return m.volume[s] > 0 ? wetted_fibres(contents.liquid_kg[s] / (m.liquid.density * m.volume[s]), free_water) : 0;
   };
+  const bool with_air = m.params.sorption == SorptionModel::linear || m.params.sorption == SorptionModel::shells;
   // A fibre in equilibrium with the air gives and takes nothing: most of a cloth that is dry.
   std::vector<Real> at_rest(m.fibres.size(), -1);
   if (m.params.sorption == SorptionModel::linear) {
@@ -166,7 +168,7 @@ Real exchange_vapour(const WettingModel& m, Contents& contents, const Air& air, 
       const Drying drying = dry(held, wet_rate * m.vapour_area[s], dt);
       held = drying.kg < held ? held - drying.kg : 0;
       given += drying.kg;
-      if (m.params.sorption != SorptionModel::none && drying.time < dt && !rests(s)) {
+      if (with_air && drying.time < dt && !rests(s)) {
         given += vapour_from_fibres(m, contents, s, density, air.humidity, air, dt - drying.time);
       }
     }

@@ -2,6 +2,7 @@
 //
 //   linear driving force   dW/dt = k (W_s - W),  k = 8 D_f/R_f^2          stepped exactly: W += (W_s - W)(1 - e^(-k dt))
 //   radial shells          dw/dt = (1/r) d/dr (r D_f dw/dr),  w(R_f) = W_s  finite volumes in r, exact in time
+//   as printed             dW/dt = W_s D_f/R_f^2 until W = W_s              seed A eq. 6
 //
 // D_f m2/s diffusivity of water in the fibre substance (constant), w(r) local regain, W its mean.
 // Source: Crank, The Mathematics of Diffusion, 1975, ch. 5 (cylinder); Glueckauf 1955 (the factor 8 of the linear form,
@@ -9,7 +10,8 @@
 // Shells are finer near the surface. Their equations are linear with constant coefficients, so a step of any length is
 // taken in their eigenvectors, which belong to the number of shells alone: stable and without error in time.
 // A segment only partly wetted (saturation below `wetted_at`) sorbs from liquid on that share of its fibres.
-// Seed A's eq. 6 has no driving difference and so no equilibrium; it is not offered as a law of its own.
+// Seed A's eq. 6 (with constant = 1 and C_f = rho W) has no driving difference: no equilibrium and no way back. Uptake stops
+// at W_s by a rule (seed A 5.2), and fibres exchange nothing with the air.
 // Tested in tests/wetting/models_test.cpp (Crank's values, equilibrium, steps composed against one long step).
 #pragma once
 
@@ -25,6 +27,12 @@ constexpr Real sorption_rate(Real diffusivity, Real radius) { return 8 * diffusi
 
 // Share of the way to the surface value that dt covers: 1 - e^(-k dt).
 Real sorbed_share(Real rate, Real dt);
+
+// Regain after dt by the printed law, rate = D_f/R_f^2; never falls.
+constexpr Real printed_regain(Real regain, Real surface, Real rate, Real dt) {
+  const Real grown = regain + surface * rate * dt;
+  return regain >= surface ? regain : grown < surface ? grown : surface;
+}
 
 // Share of a segment's fibres that liquid touches.
 constexpr Real wetted_fibres(Real saturation, Real wetted_at) {

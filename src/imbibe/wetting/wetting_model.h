@@ -38,7 +38,7 @@ struct WettingLiquid {
 };
 
 enum class TransportModel { physical, kunzel, as_printed };
-enum class SorptionModel { none, linear, shells };
+enum class SorptionModel { none, linear, shells, as_printed };
 enum class SurfaceTemperature { isothermal, wet_bulb };
 
 struct WettingParams {
@@ -88,8 +88,11 @@ void describe(V& v, WettingParams& p) {
            "temperature of an evaporating surface");
   v.value("swelling", p.swelling, {.help = "wet fibres swell, pores shrink"});
   v.choice("sorption", p.sorption,
-           {{"none", SorptionModel::none}, {"linear", SorptionModel::linear}, {"shells", SorptionModel::shells}},
-           "water into the fibre substance: linear driving force or radial shells");
+           {{"none", SorptionModel::none},
+            {"linear", SorptionModel::linear},
+            {"shells", SorptionModel::shells},
+            {"as_printed", SorptionModel::as_printed}},
+           "water into the fibre substance: linear driving force, radial shells, or the printed eq. 6");
   v.value("shells", p.shells, {.min = 4, .max = 64, .help = "radial shells per fibre"});
   v.value("wetted_at", p.wetted_at,
           {.min = 0, .max = 1, .above_min = true, .help = "saturation from which all fibres of a segment are wetted"});
