@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "imbibe/liquid/classes.h"
+#include "imbibe/liquid/tangent_fit.h"
 
 namespace imbibe {
 
@@ -38,9 +40,8 @@ struct Stage {
   SurfaceScratch& s;
   float gamma;
   float weight(float distance) const { return f.volume * f.neighbours.kernel.value(distance); }
-  float corrected(float kappa) const {
-    return kappa / (1 + static_cast<float>(params.offset) * f.spacing * kappa);
-  }
+  float depth() const { return static_cast<float>(params.offset) * f.spacing; }  // of surface particles
+  float least_spread() const { return 1e-3f * f.spacing * f.spacing; }           // of a surface to be fitted, m2
 };
 
 // 0 below `from`, 1 above `to`: every switch of this stage is gradual, since a step in a force heats the liquid.
@@ -80,56 +81,57 @@ void mark_surface(const Stage& t, std::size_t i, ParticleClass& kind) {
   t.s.reliability[i] = reliability;
   f.surface[i] = reliability > 0;
   t.s.gradient[i] = {n.x, n.y, n.z, gradient_h};
-  t.s.wet_filling[i] = filling;
-  t.s.first_layer[i] = layer;
   const Vec3f unit = length > 0 ? n / length : Vec3f{};
   t.s.normal[i] = {unit.x, unit.y, unit.z, 0};
 }
 
-// kappa = -trace S of the least-squares fit in the tangent plane.
-float fitted_curvature(const Stage& t, std::size_t i) {
-  const LiquidFields& f = t.f;
+// The surface around i in S, values(j) -> two values above those at i.
+template <class Values>
+TangentFit surface_fit(const Stage& t, std::size_t i, Values&& values) {
   const Vec3f normal = xyz(t.s.normal[i]);
-  const Vec3f across = std::abs(normal.x) < 0.6f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
-  const Vec3f first = normalized(across - normal * dot(across, normal));
-  const Vec3f second = cross(normal, first);
-  float xx = 0, xy = 0, yy = 0, nxx = 0, nxy = 0, nyx = 0, nyy = 0;
-  each_surface_neighbour(f, i, [&](Index j, const Vec3f& to_here) {
-    const Vec3f other = xyz(t.s.normal[j]);
-    if (dot(other, normal) <= 0) return;
-    const float near = std::max(0.0f, 1 - norm(to_here) * f.neighbours.kernel.inverse), w = near * near * near * t.s.reliability[j];
-    const float x = -dot(to_here, first), y = -dot(to_here, second);
-    const float n1 = dot(other, first), n2 = dot(other, second);
-    xx += w * x * x, xy += w * x * y, yy += w * y * y;
-    nxx += w * n1 * x, nxy += w * n1 * y, nyx += w * n2 * x, nyy += w * n2 * y;
+  TangentFit fit(normal, t.s.reliability[i]);
+  each_surface_neighbour(t.f, i, [&](Index j, const Vec3f& to_here) {
+    if (dot(xyz(t.s.normal[j]), normal) <= 0) return;
+    const float near = std::max(0.0f, 1 - norm(to_here) * t.f.neighbours.kernel.inverse);
+    const auto [v1, v2] = values(fit, j);
+    fit.add(near * near * near * t.s.reliability[j], -to_here, v1, v2);
   });
-  const float ridge = 0.02f * (xx + yy);
-  xx += ridge, yy += ridge;
-  const float determinant = xx * yy - xy * xy;
-  if (!(determinant > 0)) return 0;
-  const float trace = (nxx * yy - nxy * xy + nyy * xx - nyx * xy) / determinant;
-  const float limit = 0.6f / f.spacing;
-  return std::clamp(-trace, -limit, limit);
+  return fit;
+}
+
+// kappa of the liquid's surface at i in S, and how far it can be trusted: near the rim of S it cannot.
+void fit_curvature(const Stage& t, std::size_t i) {
+  const Vec3f here = xyz(t.s.normal[i]);
+  const TangentFit fit = surface_fit(t, i, [&](const TangentFit& axes, Index j) {
+    const Vec3f change = xyz(t.s.normal[j]) - here;
+    return std::pair(dot(change, axes.first()), dot(change, axes.second()));
+  });
+  const auto [s11, s12, s21, s22] = fit.slopes(t.least_spread());
+  const float centres = -(s11 + s22), gauss = s11 * s22 - 0.25f * (s12 + s21) * (s12 + s21), d = t.depth();
+  // From the surface through the centres to the liquid's, outside it by d (parallel surfaces).
+  const float stretch = std::max(1 + d * centres + d * d * gauss, 0.2f), limit = 0.6f / t.f.spacing;
+  t.s.normal[i].w = std::clamp((centres + 2 * d * gauss) / stretch, -limit, limit);
+  t.s.trust[i] = t.s.reliability[i] * ramp(-fit.lopsidedness(), -0.3f, -0.1f);
 }
 
 // Curvature off S by the kernel mean over S, and the drop a particle belongs to.
 void extend(const Stage& t, std::size_t i) {
-  const float own = t.s.reliability[i];
+  const float own = t.s.reliability[i], trust = t.s.trust[i];
   t.s.owner[i] = own > 0 ? static_cast<Index>(i) : no_index;
   t.s.curvature[i] = t.s.normal[i].w;
-  if (own == 1) return;
+  if (trust == 1) return;
   if (own == 0 && t.s.gradient[i].w < carries_force) {
     t.s.curvature[i] = 0;
     return;
   }
   float sum = 0, weights = 0, heaviest = 0;
   each_surface_neighbour(t.f, i, [&](Index j, const Vec3f& x) {
-    const float w = t.weight(norm(x)) * t.s.reliability[j];
+    const float kernel = t.weight(norm(x)), w = kernel * (t.s.trust[j] + 0.01f * t.s.reliability[j]);
     sum += w * t.s.normal[j].w, weights += w;
-    if (own == 0 && w > heaviest) heaviest = w, t.s.owner[i] = j;
+    if (own == 0 && kernel > heaviest) heaviest = kernel, t.s.owner[i] = j;
   });
   const float mean = weights > 1e-6f ? sum / weights : t.s.curvature[i];
-  t.s.curvature[i] = own * t.s.curvature[i] + (1 - own) * mean;
+  t.s.curvature[i] = trust * t.s.curvature[i] + (1 - trust) * mean;
 }
 
 // The interface as particle i, near the line, sees it: kernel means over reliable neighbours.
@@ -145,7 +147,7 @@ NearInterface near_interface(const Stage& t, std::size_t i, const WallSample& wa
   const auto add = [&](std::size_t j, const Vec3f& to_here) {
     const float w = t.weight(norm(to_here)) * t.s.reliability[j];
     seen.normal += xyz(t.s.normal[j]) * w;
-    seen.curvature += w * t.s.normal[j].w;
+    seen.curvature += w * t.s.curvature[j];
     seen.height += w * (wall.distance - dot(to_here, wall.normal));
     weights += w;
   };
@@ -159,9 +161,9 @@ NearInterface near_interface(const Stage& t, std::size_t i, const WallSample& wa
 }
 
 struct LinePull {
-  Vec3f normal{};       // of the first layer at the line, times |n|
-  float curvature = 0;
+  float curvature = 0;  // of the interface near
   Vec3f force{};        // N on the particle, along the wall
+  float length = 0;     // m, of the line that the particle stands for
   float drag = 0;       // 1/s
   float activity = 0;   // 0..1
 };
@@ -180,37 +182,59 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall) {
   if (activity == 0) return pull;
   const NearInterface seen = near_interface(t, i, wall);
   const Vec3f inward = along / length;
-  const float kappa = t.corrected(seen.curvature);
+  const float kappa = seen.curvature;
   // Without an interface in reach i belongs to a film of one layer: its angle is 0, it withdraws. Otherwise a receding
   // line leaves such a film behind.
-  const float extrapolated =
-      std::clamp(-(dot(seen.normal, wall.normal) + 0.5f * seen.height * kappa), -1.0f, 1.0f);
+  const float extrapolated = std::clamp(
+      -(dot(seen.normal, wall.normal) * (1 - 0.5f * t.depth() * kappa) + 0.5f * seen.height * kappa), -1.0f, 1.0f);
   const float cosine = 1 + seen.trust * (extrapolated - 1);
-  const float sine = std::sqrt(1 - cosine * cosine);
   pull.activity = activity;
-  pull.normal = (inward * sine - wall.normal * cosine) * (tau / std::max(sine, 0.35f));
   pull.curvature = seen.curvature;
   const float strength = norm(wall.gradient);
-  pull.force = inward * (-4 * t.gamma * strength * tau * f.volume * activity *
+  pull.length = 4 * strength * tau * f.volume * activity;
+  pull.force = inward * (-t.gamma * pull.length *
                          unbalanced_cosine(cosine, wall.cos_contact_angle, wall.cos_receding_angle));
   pull.drag = activity * static_cast<float>(t.params.contact.line_friction) * std::sqrt(t.gamma * f.spacing / f.rest_density) *
               strength / std::max(wall.distance, 0.3f * f.spacing);
   return pull;
 }
 
+// Gradient of the curvature along the surface at i in S, 1/m2.
+Vec3f curvature_slope(const Stage& t, std::size_t i) {
+  const TangentFit fit = surface_fit(t, i, [&](const TangentFit&, Index j) {
+    return std::pair(t.s.curvature[j] - t.s.curvature[i], 0.0f);
+  });
+  const TangentFit::Slopes slopes = fit.slopes(t.least_spread());
+  return fit.first() * slopes.s11 + fit.second() * slopes.s12;
+}
+
+// What a uniform pressure does to particle i, per Pa and over V: half of the pressure operator's response to k = 1/(1 - lambda)
+// (pressure.h). Away from walls the colour gradient.
+Vec3f pressure_response(const Stage& t, std::size_t i) {
+  const LiquidFields& f = t.f;
+  if (f.boundary.samples(i).empty()) return xyz(f.colour_gradient[i]);
+  const auto open = [&](std::size_t j) { return 1 / std::max(1 - f.boundary.wall[j].w, 0.1f); };
+  const float own = open(i);
+  Vec3f sum = xyz(f.boundary.push[i]) * own;
+  each_neighbour(f, i, [](Index) { return true; }, [&](Index j, const Vec3f& x) {
+    sum += x * (0.5f * (own + open(j)) * f.volume * f.neighbours.kernel.slope(norm(x)));
+  });
+  return sum;
+}
+
 // Force on particle i; what the line gives to walls is added to impulse (of the tile).
 void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
   LiquidFields& f = t.f;
-  Vec3f n = xyz(t.s.gradient[i]);
   float kappa = t.s.curvature[i];
   Vec3f line{};
+  t.s.line_length[i] = 0;
   for (const WallSample& wall : f.boundary.samples(i)) {
     const LinePull pull = line_pull(t, i, wall);
     const float w = first_layer(wall.distance, f.spacing);
-    n = n * (1 - w) + pull.normal * (w * pull.activity);
     kappa = (1 - w * pull.activity) * kappa + w * pull.activity * pull.curvature;
     if (pull.activity == 0) continue;
     line += pull.force;
+    if (pull.length > t.s.line_length[i]) t.s.line_length[i] = pull.length, t.s.line_wall[i] = wall.wall;
     // Friction of the line, implicit so that it can only slow.
     Float4& u = f.velocity[i];
     const Vec3f v = xyz(u), tangential = v - wall.normal * dot(v, wall.normal);
@@ -219,11 +243,14 @@ void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
     u = {v.x - lost.x, v.y - lost.y, v.z - lost.z, 0};
     impulse[wall.wall] += Vec3(lost * f.particle_mass - pull.force * static_cast<float>(dt));
   }
-  const Vec3f a = (n * (2 * t.gamma * t.corrected(kappa)) + line / f.volume) / f.rest_density;
+  Vec3f surface{};
+  if (kappa != 0) surface = pressure_response(t, i) * (2 * t.gamma * kappa);
+  if (t.s.trust[i] > 0) surface -= curvature_slope(t, i) * (t.depth() / f.spacing * t.gamma * t.s.trust[i]);
+  surface = surface / f.rest_density;
+  const Vec3f a = surface + line / f.particle_mass;
   f.force[i] = {a.x, a.y, a.z, 0};
   // Kept for the balance of free drops: the curvature part alone is wanted there, and away from walls it is all.
-  t.s.gradient[i] = {a.x - line.x / f.particle_mass, a.y - line.y / f.particle_mass, a.z - line.z / f.particle_mass,
-                     t.s.gradient[i].w};
+  t.s.gradient[i] = {surface.x, surface.y, surface.z, t.s.gradient[i].w};
 }
 
 // Drops are the connected parts of S; root[i] is the smallest index of i's part.
@@ -244,12 +271,14 @@ void find_drops(const Stage& t) {
   }
 }
 
-// The curvature forces on a drop that touches nothing add up to zero; a gather form misses that by about 0.1 % of
-// 2 pi R gamma, enough to make a small drop swim. Returns the sum over drops that do touch something.
-Vec3 balance_free_drops(const Stage& t) {
+// The momentum of the curvature forces, drop by drop. On a drop without a contact line they must add up to zero; a gather
+// form misses that by about 0.1 % of 2 pi R gamma, enough to make a small drop swim: the rest is taken off. On a drop with
+// a line their sum is the wall's pull on the line (-2 pi a gamma sin(theta) on a cap): the walls get the reaction, shared
+// by the length of line on each. Returns the sum over drops with a line.
+Vec3 balance_drops(const Stage& t, Real dt, std::vector<Vec3>& impulse) {
   LiquidFields& f = t.f;
   find_drops(t);
-  constexpr std::size_t width = 5;  // per root: force x y z, sum of |force|, touches a wall
+  constexpr std::size_t width = 5;  // per root: force/mass x y z, sum of |force/mass|, length of line
   std::vector<double>& sums = t.s.drop_sums;
   sums.assign(width * f.count, 0);
   const auto drop = [&](std::size_t i) { return width * root_of(t.s.root, t.s.owner[i]); };
@@ -259,17 +288,19 @@ Vec3 balance_free_drops(const Stage& t) {
     const Float4& a = t.s.gradient[i];
     sum[0] += a.x, sum[1] += a.y, sum[2] += a.z;
     sum[3] += norm(xyz(a));
-    if (t.s.first_layer[i] > 0) sum[4] = 1;
+    sum[4] += t.s.line_length[i];
   }
   Vec3 held{};
   for (std::size_t i = 0; i < f.count; ++i) {
     if (t.s.owner[i] == no_index) continue;
     const double* sum = &sums[drop(i)];
-    const Vec3f a = xyz(t.s.gradient[i]);
-    if (sum[4] != 0) {
-      held += Vec3(a) * Real(f.particle_mass);
+    if (sum[4] > 0) {
+      if (t.s.line_length[i] == 0) continue;
+      const Vec3 share = Vec3{sum[0], sum[1], sum[2]} * (t.s.line_length[i] / sum[4] * Real(f.particle_mass));
+      held += share;
+      impulse[t.s.line_wall[i]] -= share * dt;
     } else if (sum[3] > 0) {
-      const auto share = static_cast<float>(norm(a) / sum[3]);
+      const auto share = static_cast<float>(norm(xyz(t.s.gradient[i])) / sum[3]);
       Float4& force = f.force[i];
       force = {force.x - share * static_cast<float>(sum[0]), force.y - share * static_cast<float>(sum[1]),
                force.z - share * static_cast<float>(sum[2]), 0};
@@ -280,8 +311,8 @@ Vec3 balance_free_drops(const Stage& t) {
 
 void begin_scratch(SurfaceScratch& s, std::size_t count) {
   s.gradient.resize(count), s.normal.resize(count);
-  s.curvature.resize(count), s.wet_filling.resize(count), s.first_layer.resize(count);
-  s.reliability.resize(count), s.owner.resize(count), s.root.resize(count);
+  s.curvature.resize(count), s.line_length.resize(count), s.line_wall.resize(count);
+  s.reliability.resize(count), s.trust.resize(count), s.owner.resize(count), s.root.resize(count);
 }
 
 }  // namespace
@@ -294,7 +325,8 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
   const Stage t{f, params, scratch, static_cast<float>(surface_tension)};
   parallel_for(f.count, [&](std::size_t i) { mark_surface(t, i, kinds[i]); });
   parallel_for(f.count, [&](std::size_t i) {
-    if (f.surface[i]) scratch.normal[i].w = fitted_curvature(t, i);
+    scratch.trust[i] = 0;
+    if (f.surface[i]) fit_curvature(t, i);
   });
   parallel_for(f.count, [&](std::size_t i) { extend(t, i); });
   const std::size_t tiles = (f.count + default_tile - 1) / default_tile;
@@ -304,7 +336,7 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
     for (std::size_t i = begin; i < end; ++i) force_on(t, i, dt, part);
   });
   for (std::size_t k = 0; k < scratch.wall_parts.size(); ++k) impulse[k % walls.size()] += scratch.wall_parts[k];
-  report.net_force = balance_free_drops(t);
+  report.net_force = balance_drops(t, dt, impulse);
   for (std::size_t i = 0; i < f.count; ++i) report.surface_particles += f.surface[i];
   return report;
 }

@@ -27,7 +27,7 @@
 namespace imbibe {
 
 struct SurfaceParams {
-  Real offset = 0;                // dx
+  Real offset = 0.5;              // dx
   Real numerical_viscosity = 0.1;  // of sqrt(gamma dx/rho), added to the liquid's: see numerical_viscosity()
   Real damping = 1;               // strength of the grid-scale filter per shortest capillary time (damping.h)
   ContactAngleParams contact;
@@ -48,9 +48,10 @@ struct SurfaceScratch {
   std::vector<Float4> gradient;       // n with wetted walls, w = |n| H
   std::vector<Float4> normal;         // unit n, w = kappa; on S
   std::vector<float> curvature;       // kappa, extended beyond S
-  std::vector<float> wet_filling;     // C + beta lambda
-  std::vector<float> reliability;     // 0..1, of normal and curvature; > 0: in S
-  std::vector<float> first_layer;     // 1 next to a wall, 0 from 1.6 dx on
+  std::vector<float> reliability;     // 0..1, of the normal; > 0: in S
+  std::vector<float> trust;           // 0..reliability, of the curvature
+  std::vector<float> line_length;     // m, of contact line that the particle stands for
+  std::vector<Index> line_wall;       // its wall, where the length is > 0
   std::vector<Index> owner;           // the reliable particle whose drop i belongs to; no_index: none
   std::vector<Index> root;            // of the drops, by reliable particle
   std::vector<double> drop_sums;
