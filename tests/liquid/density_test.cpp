@@ -57,11 +57,34 @@ TEST(Density, a_wall_counts_under_liquid_that_stands_on_it_and_not_across_a_gap)
     b.each_away_from_sides(10, [&](std::size_t i) {
       const auto walls = b.f.boundary.samples(i);
       if (walls.empty() || walls[0].lambda < 1e-3f) return;  // at the rim of the support the factor multiplies nothing
-      EXPECT_FLOAT_EQ(b.f.wall_contact[i], gap == 0 ? 1 : 0) << gap << " " << b.f.position[i].z / spacing;
+      const Float4& wall = b.f.boundary.wall[i];
+      EXPECT_NEAR(wall.w, gap == 0 ? walls[0].lambda : 0, 1e-6) << gap << " " << b.f.position[i].z / spacing;
+      EXPECT_EQ(norm(walls[0].push) > 0, gap == 0);
       ++counted;
     });
     EXPECT_GT(counted, 15) << gap;
   }
+}
+
+TEST(Density, in_a_corner_a_wall_across_a_gap_does_not_count_and_the_other_does) {
+  // A block on the floor, a wall two spacings beside it: seen through the gap by the outermost particles.
+  Block b(10, 5, 0.05, true);
+  const Shape beside = Plane{{-1.6 * spacing, 0, 0}, {1, 0, 0}};
+  b.walls.push_back({&beside, {}, {}, false});
+  sample_walls(b.f.boundary, b.f.position, b.f.count, b.walls, b.f.neighbours.kernel);
+  compute_density(b.f);
+  int both = 0;
+  for (std::size_t i = 0; i < b.f.count; ++i) {
+    const auto walls = std::as_const(b.f.boundary).samples(i);
+    const Float4& x = b.f.position[i];
+    if (walls.size() < 2 || x.y < 3 * spacing || x.y > 9 * spacing || x.z > spacing) continue;
+    ++both;
+    const Float4& push = b.f.boundary.push[i];
+    EXPECT_LT(std::abs(push.x), 0.02f * std::abs(push.z)) << x.x / spacing;  // contact fades between 0.5/H and 0.9/H
+    EXPECT_LT(push.z, 0) << x.x / spacing;
+    EXPECT_NEAR(b.f.boundary.wall[i].w, walls[0].wall == 0 ? walls[0].lambda : walls[1].lambda, 1e-3);
+  }
+  EXPECT_GE(both, 4);
 }
 
 TEST(Damping, conserves_momentum_takes_energy_and_leaves_a_rigid_motion) {

@@ -26,7 +26,7 @@ struct WallSample {
   Vec3f normal{};               // unit, out of the solid
   float lambda = 0;             // of this wall alone
   Vec3f gradient{};             // this wall's part of G (weighted as above: the samples' gradients add up to G)
-  Vec3f push{};                 // this wall's part of P, weighted alike
+  Vec3f push{};                 // this wall's part of P, weighted alike; density.h takes out walls across a gap
   float cos_contact_angle = 0;
   float cos_receding_angle = 0;  // the same without hysteresis
   float friction = 0;
@@ -48,6 +48,11 @@ struct Boundary {
 
   std::span<const WallSample> samples(std::size_t i) const {
     const Tile& t = tiles[i / default_tile_size];
+    const std::size_t k = i % default_tile_size;
+    return {t.samples.data() + t.first[k], t.samples.data() + t.first[k + 1]};
+  }
+  std::span<WallSample> samples(std::size_t i) {
+    Tile& t = tiles[i / default_tile_size];
     const std::size_t k = i % default_tile_size;
     return {t.samples.data() + t.first[k], t.samples.data() + t.first[k + 1]};
   }

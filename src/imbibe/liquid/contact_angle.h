@@ -1,13 +1,13 @@
 // The contact line: wetness of walls, the actual angle, and the line force that drives it to the wanted one.
 //
 //   beta = clamp((s - lo)/(hi - lo), 0, 1),  s = 2 sum_j V W(|x_F - x_j|)     wetness of the wall under i; x_F its foot
-//   cos th_a = -(n~.m + d~ kappa~/2)                                          actual angle, extrapolated to the wall
+//   cos th_a = -(n~.m (1 - d kappa~/2) + d~ kappa~/2)    actual angle: extrapolated to the wall, and from the surface
+//                                                         through the centres to the liquid's (d, surface_tension.h)
 //   F_i = -4 gamma |G_i| tau_i V (cos theta - cos th_a) e                     [N], tangential; reaction on the wall
-//   m outward wall normal, d distance [m], n~ kappa~ d~ kernel means over reliable surface particles near i,
+//   m outward wall normal, d~ height over the wall [m], n~ kappa~ d~ kernel means over reliable surface particles near i,
 //   tau_i = |n^f_tan|/(1 - lambda_i) [1/m], e = n^f_tan/|n^f_tan| (into the liquid along the wall)
 // 4 |G| tau V adds up to the length of the line: 1/2 across the line, 1/2 normal to the wall.
-// A dry wall is not liquid (beta = 0), else drops stick below overhangs. In the first layer the surface's normal is the
-// one of the actual angle, e sin th_a - m cos th_a: there the colour has a kink that curvature must not see.
+// A dry wall is not liquid (beta = 0), else drops stick below overhangs.
 // A film of one layer has no measurable interface in reach: its angle counts as 0, so it withdraws where theta > 0 (else
 // a receding line leaves it behind).
 // Hysteresis: no line force while the actual angle is between receding and advancing.

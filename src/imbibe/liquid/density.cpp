@@ -34,15 +34,41 @@ std::array<float, completion_entries + 1> completion_table() {
   return table;
 }
 
-// How far the gap under a particle is filled: |n + G| along the wall's normal is 0 where liquid reaches down to it and
-// that of a free surface where air lies between. Limits: 0.9/H is a gap of about one layer, 0.5/H none (the noise of a
-// resting layer is 0.2/H).
-Floats wall_contact(const Floats3& gradient, const Floats4& wall, float support) {
+// How far the gap between a particle and a wall is filled: |n + G| along the wall's normal is 0 where liquid reaches down
+// to it and that of a free surface where air lies between. Limits: 0.9/H is a gap of about one layer, 0.5/H none (the noise
+// of a resting layer is 0.2/H).
+float wall_contact(const Vec3f& gradient, const Vec3f& normal, float support) {
   constexpr float open = 0.9f, closed = 0.5f;
-  const Floats length = simd::sqrt(wall.x * wall.x + wall.y * wall.y + wall.z * wall.z);
-  const Floats along = (gradient.x + wall.x) * wall.x + (gradient.y + wall.y) * wall.y + (gradient.z + wall.z) * wall.z;
-  const Floats bare = -support * along / simd::max(length, 1e-20f);
-  return simd::min(simd::max((open - bare) / (open - closed), 0.0f), simd::broadcast(1.0f));
+  const float bare = support * dot(gradient, normal);
+  return std::clamp((open - bare) / (open - closed), 0.0f, 1.0f);
+}
+
+// Takes the walls that liquid does not reach out of what particle i sees. liquid: V sum grad W over its neighbours.
+void leave_dry_walls(Boundary& boundary, std::size_t i, const Vec3f& liquid, float support) {
+  const std::span<WallSample> samples = boundary.samples(i);
+  if (samples.empty()) return;
+  const Float4& all = boundary.wall[i];
+  const Vec3f gradient = liquid + Vec3f{all.x, all.y, all.z};
+  float contact[walls_per_particle], least = 1;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    contact[k] = wall_contact(gradient, samples[k].normal, support);
+    least = std::min(least, contact[k]);
+  }
+  if (least == 1) return;
+  Vec3f g{}, p{};
+  float outside = 1;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    // The sample's gradient carries the factors 1 - lambda of the others: they become 1 - contact lambda.
+    float scale = contact[k];
+    for (std::size_t l = 0; l < samples.size(); ++l) {
+      if (l != k) scale *= (1 - contact[l] * samples[l].lambda) / std::max(1 - samples[l].lambda, 0.05f);
+    }
+    outside *= 1 - contact[k] * samples[k].lambda;
+    samples[k].push = samples[k].push * scale;
+    g += samples[k].gradient * scale, p += samples[k].push;
+  }
+  boundary.wall[i] = {g.x, g.y, g.z, 1 - outside};
+  boundary.push[i] = {p.x, p.y, p.z, 0};
 }
 
 }  // namespace
@@ -89,14 +115,13 @@ void compute_density(LiquidFields& f) {
         gradient.x += slope * x.x, gradient.y += slope * x.y, gradient.z += slope * x.z;
         square += slope * slope * d2;
       }
-      Floats4 wall = simd::load4(&f.boundary.wall[i]);
-      const Floats contact = wall_contact(gradient, wall, kernel.support);
-      const Floats4 bare = simd::load4(&f.boundary.push[i]);
-      wall = {wall.x * contact, wall.y * contact, wall.z * contact, wall.w * contact};
-      const Floats3 push{bare.x * contact, bare.y * contact, bare.z * contact};
-      simd::store4(&f.boundary.wall[i], wall.xyz(), wall.w);
-      simd::store4(&f.boundary.push[i], push, Floats{});
-      simd::store(&f.wall_contact[i], contact);
+      const std::size_t last = std::min(i + lanes, f.count);
+      simd::store4(&f.colour_gradient[i], gradient, Floats{});
+      for (std::size_t p = i; p < last; ++p) {
+        const Float4& n = f.colour_gradient[p];
+        leave_dry_walls(f.boundary, p, {n.x, n.y, n.z}, kernel.support);
+      }
+      const Floats4 wall = simd::load4(&f.boundary.wall[i]), push = simd::load4(&f.boundary.push[i]);
       const Floats colour = own + volume * kernel.value_scale * sum;
       const Floats share = simd::min(colour / simd::max(1 - wall.w, 0.25f), 1.0f);
       const Floats3 air{gradient.x + share * wall.x, gradient.y + share * wall.y, gradient.z + share * wall.z};
@@ -105,7 +130,6 @@ void compute_density(LiquidFields& f) {
       simd::store(&f.filling[i], colour + wall.w);
       simd::store4(&f.colour_gradient[i], gradient, kernel.support * simd::sqrt(simd::dot(air, air)));
       simd::store(&f.factor[i], 1 / (simd::dot(doubled, doubled) + square + tiny));
-      const std::size_t last = std::min(i + lanes, f.count);
       for (std::size_t p = i; p < last; ++p) {
         f.density_error[p] = density_error(f.colour[p], f.boundary.wall[p].w, f.colour_gradient[p].w);
       }

@@ -7,8 +7,9 @@
 //   V = m/rho0 constant [m3]; lambda, G, P of the walls (boundary.h)
 //
 // Air gap. A wall counts only where liquid reaches it: with air between, it must not push (fragments would glide over a
-// wall on a cushion 1.5 spacings high). The walls' lambda, G and P of a particle are scaled by its wall_contact, 1 where
-// -(n + G).m H < 0.5 (m out of the wall) and 0 above 0.9, as under a free surface.
+// wall on a cushion 1.5 spacings high). Lambda, G and P of each wall near a particle are scaled by its contact, 1 where
+// (n + G).m H < 0.5 (n + G all liquid and walls around, m out of this wall) and 0 above 0.9, as under a free surface. A
+// drop in a corner may stand on one wall and not yet touch the other.
 //
 // Air completion. A particle at a free surface misses neighbours, so its filling says nothing about its spacing. The
 // missing part is inferred from the colour gradient: a flat surface at depth d gives |n| = A(d) and misses lambda(d)
@@ -28,7 +29,8 @@
 
 namespace imbibe {
 
-// Fills f.colour, f.filling, f.colour_gradient (w: |n + f G| H), f.factor and f.density_error.
+// Fills f.colour, f.filling, f.colour_gradient (w: |n + f G| H), f.factor and f.density_error; takes the walls across a gap out of
+// f.boundary (its sums and each sample's push).
 void compute_density(LiquidFields& f);
 
 // lambda_a for gradient_h = |grad lambda_a| H.

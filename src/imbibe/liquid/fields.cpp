@@ -16,7 +16,7 @@ void begin_fields(LiquidFields& f, const Liquid& liquid) {
     for (std::size_t i = f.count; i < padded; ++i) (*array)[i] = {};
   }
   for (auto* array : {&f.filling, &f.colour, &f.factor, &f.source, &f.density_error, &f.applied, &f.pressure,
-                      &f.wall_push, &f.wall_contact}) {
+                      &f.wall_push}) {
     array->resize(padded);
     for (std::size_t i = f.count; i < padded; ++i) (*array)[i] = 0;
   }

@@ -31,7 +31,6 @@ struct LiquidFields {
   std::vector<float> filling;         // C_i + lambda_i: density / rest density, walls included
   std::vector<float> colour;          // C_i = V sum W (own included), liquid only
   std::vector<Float4> colour_gradient;  // xyz = V sum grad W over liquid neighbours [1/m], w free
-  std::vector<float> wall_contact;    // 0..1: liquid reaches the walls under i (density.h); scales boundary.wall, push
   std::vector<float> factor;          // solver's diagonal
   std::vector<float> source;          // solver's right side
   std::vector<float> density_error;   // relative, air completed (density.h)

@@ -132,6 +132,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
                              const Vec3& gravity, Real max_step, LiquidScratch& scratch) {
   LiquidStepReport report;
   report.wall_impulse.assign(walls.size(), {});
+  report.wall_pressure_impulse.assign(walls.size(), {});
   LiquidStepBound bound{max_step, "given"};
   if (liquid.particles.size() > 0) bound = liquid_step_bound(liquid, params, gravity);
   if (max_step < bound.step_s) bound = {max_step, "given"};
@@ -184,7 +185,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   }
   const PressureReport pressure =
       project_velocity(f, params.pressure, dt, shifts ? 0 : std::min(1.0, relaxation), particles.warm_pressure);
-  add_wall_impulse(f.boundary, f.wall_push, liquid.particle_mass * dt, report.wall_impulse);
+  add_wall_impulse(f.boundary, f.wall_push, liquid.particle_mass * dt, report.wall_pressure_impulse);
   report.pressure_iterations = pressure.iterations;
   report.density_error = pressure.density_error;
   report.peak_density_error = pressure.peak_density_error;
@@ -194,7 +195,8 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
 
   move(f, particles, dt, shifts);
   report.put_back = keep_outside(f.boundary, f.position, particles.position, particles.velocity, f.count, walls,
-                                 liquid.spacing(), liquid.particle_mass, report.wall_impulse);
+                                 liquid.spacing(), liquid.particle_mass, report.wall_pressure_impulse);
+  for (std::size_t k = 0; k < walls.size(); ++k) report.wall_impulse[k] += report.wall_pressure_impulse[k];
   report.max_speed = greatest_speed(particles.velocity);
   if (!std::isfinite(report.max_speed)) throw NumericalError(0, 0, "liquid", "a velocity is not finite");
   report.times.move = timer.lap();

@@ -73,7 +73,10 @@ struct LiquidStepReport {
   Real max_speed = 0;             // m/s after the step
   std::size_t put_back = 0;       // particles the positional safety net moved
   bool converged = true;
-  std::vector<Vec3> wall_impulse;  // N s given to each wall of the step
+  // N s given to each wall of the step: all of it (pressure, friction, the pull of contact lines), so that the liquid's
+  // momentum changes by gravity less these; and its part by pressure and impact alone, p A under a drop, which drives
+  // liquid into pores.
+  std::vector<Vec3> wall_impulse, wall_pressure_impulse;
   // Wall-clock seconds per stage, for benchmarks.
   struct Times {
     double sort = 0, walls = 0, lists = 0, density = 0, viscosity = 0, surface = 0, pressure = 0, move = 0;

@@ -164,7 +164,7 @@ PressureReport project_velocity(LiquidFields& f, const PressureParams& params, R
   parallel_for(f.count, [&](std::size_t i) {
     const float k = f.pressure[i];
     warm[i] = k;
-    f.wall_push[i] = 2 * k * f.wall_contact[i];
+    f.wall_push[i] = 2 * k;
     f.pressure[i] = k * f.rest_density * (1 - f.boundary.wall[i].w);
     f.position[i].w = 0;
   });

@@ -1,19 +1,26 @@
 // Surface tension as a force on the free surface: curvature by a tangent-plane fit on reliable surface particles.
 //
-//   n_i = n^f_i + sum_k beta_k G_k            colour gradient with WETTED walls counted as liquid [1/m]
-//   kappa_i = -trace of S,  S from (n^_j - n^_i).t_a = S_ab (x_j - x_i).t_b, weighted least squares    [1/m], sphere 2/R
-//   F_i = 2 gamma kappa' V n_i                [N]   kappa' = kappa/(1 + offset dx kappa)
-//   gamma surface tension [N/m], beta wetness of wall k (contact_angle.h), n^ = n/|n|
-// The factor 2: only the liquid half of the colour's profile exists, integral of |n| across it is 1/2. The force equals the
-// pressure p_s = gamma kappa prescribed at the surface (Young-Laplace), so p inside is the true one.
-// kappa is measured only on the set S: |n|H > 0.3, C > 0.25, C + beta lambda < 0.92, at least 1.2 dx from walls (all as
-// gradual weights); it acts on all particles with |n| > 0 (extended from S by a kernel mean): else 17 % of the tension is lost.
-// offset: depth, in dx, at which particles stand under the surface; 0 gives the best Laplace pressure (+2 % at R = 8 dx).
+//   n_i = n^f_i + sum_k beta_k G_k            colour gradient with WETTED walls counted as liquid [1/m], for n^ and S
+//   S,  (n^_j - n^_i).t_a = S_ab (x_j - x_i).t_b     weighted least squares over reliable neighbours (tangent_fit.h)
+//   kappa = (k + 2 d K)/(1 + d k + d^2 K),  k = -tr S, K = det S      [1/m], sphere 2/R
+//   F_i = 2 gamma kappa_i V N_i - gamma d dx^2 grad_s kappa           [N]
+//   gamma surface tension [N/m], beta wetness of wall k (contact_angle.h), n^ = n/|n|, d = offset dx
+//   N_i  what a uniform pressure does to particle i: the pressure operator's own response (pressure.h) to p = 1,
+//        n^f_i away from walls; next to them (1/2) sum_j V (w_i + w_j) grad W_ij + w_i P_i, w = 1/(1 - lambda)
+// The force is that of the pressure p_s = gamma kappa prescribed at the surface (Young-Laplace): a drop of uniform curvature
+// is exactly at rest, on walls too, p inside is the true one, and the sum over a cap is -2 pi a gamma sin(theta) with a the
+// true radius, since the wall's P counts whole columns of liquid.
+// d: centres of the outermost particles stand half a spacing under the liquid's surface. Their surface is parallel to it,
+// hence kappa; and on the shell outside them p_s pushes along the surface, hence the second term (work done on an
+// incompressible flow is then right to first order in d: Rayleigh's period +8 % without it, +1 % with it, at R = 8 dx).
+// kappa is measured only on the set S: |n|H > 0.3, C > 0.25, C + beta lambda < 0.92, at least 1.2 dx from walls, S evenly
+// around (all as gradual weights); it acts on all particles with |n| > 0 and at the contact line (extended by a kernel
+// mean): else 17 % of the tension is lost.
 // Sources: Brackbill, Kothe & Zemach, J. Comput. Phys. 100 (1992) 335; Morris, Int. J. Numer. Meth. Fluids 33 (2000) 333.
-// Net force of a drop that touches nothing is set to zero (a gather form does not conserve momentum by itself).
-// The force acts at particle centres, dx/2 inside: its sum over a cap is low by about 0.7 dx/a.
+// Momentum: the forces on a drop that touches nothing are made to sum to zero (a gather form does not conserve it by
+// itself); the sum on a drop with a contact line is the wall's pull on the line, and the wall gets the reaction.
 // Validity: radius >= 4 dx, films >= 3 dx. Stability: dt <= 0.5 sqrt(rho dx^3/(2 pi gamma)), and damping.h.
-// Tested in tests/liquid/drop_test.cpp: Laplace pressure, Rayleigh period, resting centre, vertical force.
+// Tested in tests/liquid/drop_test.cpp: Laplace pressure, Rayleigh period, resting centre, vertical force, momentum.
 #pragma once
 
 #include <span>
@@ -35,7 +42,7 @@ struct SurfaceParams {
 
 template <class V>
 void describe(V& v, SurfaceParams& p) {
-  v.value("offset", p.offset, {.min = 0, .max = 1, .help = "depth of surface particles for the curvature, in spacings"});
+  v.value("offset", p.offset, {.min = 0, .max = 1, .help = "depth of the outermost particles under the surface, in spacings"});
   v.value("numerical_viscosity", p.numerical_viscosity,
           {.min = 0, .max = 2, .help = "viscosity added for stability, of sqrt(surface tension x spacing / density)"});
   v.value("damping", p.damping,
@@ -60,11 +67,11 @@ struct SurfaceScratch {
 
 struct SurfaceReport {
   std::size_t surface_particles = 0;  // members of S
-  Vec3 net_force{};  // N, of the curvature part on all drops that touch a wall; -2 pi a gamma sin(theta) z on a cap
+  Vec3 net_force{};  // N, of the curvature part on all drops with a contact line; -2 pi a gamma sin(theta) z on a cap
 };
 
-// Fills f.force (m/s2), f.surface (S) and kinds; slows f.velocity by the line's friction; impulse[wall] += what the line
-// gives to each wall, N s.
+// Fills f.force (m/s2), f.surface (S) and kinds; slows f.velocity by the line's friction; impulse[wall] += what lines give
+// to each wall, N s: friction, the tangential force's and the surface's reaction.
 SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real surface_tension,
                               std::span<const Wall> walls, Real dt, SurfaceScratch& scratch,
                               std::vector<ParticleClass>& kinds, std::vector<Vec3>& impulse);

@@ -71,14 +71,15 @@ void build_walls(const World& world, StepScratch& scratch) {
   }
 }
 
-// The sheets are held: what the liquid gives them is booked, and its force averaged for the uptake law.
-void book_impulses(World& world, const std::vector<Vec3>& impulses, Real dt) {
-  const Real blend = std::min(1.0, dt / force_averaging_time);
+// The sheets are held: what the liquid gives them is booked; the part by pressure is averaged for the uptake law (the pull
+// of a contact line lifts the sheet but does not hold liquid off its pores).
+void book_impulses(World& world, const LiquidStepReport& liquid) {
+  const Real blend = std::min(1.0, liquid.step_s / force_averaging_time);
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
     Textile& textile = world.textiles[t];
-    const Vec3& impulse = impulses[world.solids.size() + t];
-    textile.exchange.impulse += impulse;
-    const Real force = -dot(impulse, textile.placement.n) / dt;
+    const std::size_t wall = world.solids.size() + t;
+    textile.exchange.impulse += liquid.wall_impulse[wall];
+    const Real force = -dot(liquid.wall_pressure_impulse[wall], textile.placement.n) / liquid.step_s;
     textile.exchange.normal_force += blend * (force - textile.exchange.normal_force);
   }
 }
@@ -116,7 +117,7 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   } catch (const NumericalError& error) {  // the liquid knows neither the world's time nor its step
     throw NumericalError(world.time, world.step, error.stage, error.where + ": " + lost_particle(world.liquid.particles));
   }
-  book_impulses(world, liquid.wall_impulse, liquid.step_s);
+  book_impulses(world, liquid);
   report.liquid_moved = true;
   report.step_s = liquid.step_s;
   report.step_bound = liquid.bound;
