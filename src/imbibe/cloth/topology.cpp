@@ -5,6 +5,7 @@
 #include <map>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/portable.h"
 
 namespace imbibe {
 namespace {
@@ -102,7 +103,7 @@ void add_grid_springs(const Grid& g, SheetTopology& t) {
   for (Index i = 0; i < g.columns; ++i) {
     for (Index j = 0; j + 1 < g.rows; ++j) add(g.at(i, j), g.at(i, j + 1), g.dv, SpringKind::structural);
   }
-  const Real diagonal = std::hypot(g.du, g.dv);
+  const Real diagonal = portable::hypot(g.du, g.dv);
   for (Index j = 0; j + 1 < g.rows; ++j) {
     for (Index i = 0; i + 1 < g.columns; ++i) add(g.at(i, j), g.at(i + 1, j + 1), diagonal, SpringKind::shear);
     for (Index i = 0; i + 1 < g.columns; ++i) add(g.at(i + 1, j), g.at(i, j + 1), diagonal, SpringKind::shear);
@@ -120,7 +121,7 @@ void add_grid_springs(const Grid& g, SheetTopology& t) {
 struct MaterialPoint {
   Real u, v;
 };
-Real distance(const MaterialPoint& a, const MaterialPoint& b) { return std::hypot(b.u - a.u, b.v - a.v); }
+Real distance(const MaterialPoint& a, const MaterialPoint& b) { return portable::hypot(b.u - a.u, b.v - a.v); }
 // Twice the signed area of a, b, c.
 Real doubled_area(const MaterialPoint& a, const MaterialPoint& b, const MaterialPoint& c) {
   return (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);

@@ -1,3 +1,6 @@
+// With oneTBB; parallel_threads.cpp has the same on plain threads.
+#ifndef IMBIBE_PLAIN_THREADS
+
 #include "imbibe/core/parallel.h"
 
 #include <tbb/global_control.h>
@@ -25,3 +28,5 @@ void detail::run_tiles(std::size_t tiles, void* body, TileCall call) {
 }
 
 }  // namespace imbibe
+
+#endif

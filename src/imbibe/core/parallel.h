@@ -1,5 +1,5 @@
 // Parallel loops whose results do not depend on the number of threads: work is cut into fixed tiles, a tile writes
-// only its own items, and sums are added tile by tile in order. Only parallel.cpp knows the threading library.
+// only its own items, and sums are added tile by tile in order. Only parallel.cpp (and parallel_threads.cpp, for the thread sanitizer) knows the threading library.
 #pragma once
 
 #include <cstddef>

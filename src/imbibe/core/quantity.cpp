@@ -12,6 +12,8 @@
 namespace imbibe {
 namespace {
 
+constexpr std::size_t longest_unit = 100;  // UDUNITS parses by recursion
+
 struct UnitFree {
   void operator()(ut_unit* u) const { ut_free(u); }
 };
@@ -84,12 +86,15 @@ Real parse_quantity(std::string_view text, std::string_view si_unit) {
   if (unit.empty() && (si_unit == "K" || si_unit == "rad"))
     throw QuantityError(fmt::format("'{}' needs a unit ({})", all, si_unit == "K" ? "degC or K" : "deg or rad"));
   if (unit.empty()) return value;
+  if (unit.size() > longest_unit) throw QuantityError(fmt::format("a unit of {} letters is not known", unit.size()));
   if (unit == "Ne") {  // indirect system: hanks of 840 yards in a pound; 590.5 tex at Ne 1
     if (si_unit != "kg/m") throw QuantityError(fmt::format("'Ne' is not convertible to {}", si_unit));
     if (value <= 0) throw QuantityError("a yarn count in Ne must be above 0");
     return 0.45359237 / (840 * 0.9144) / value;
   }
-  return converted(unit, std::string(si_unit), value);
+  const Real si = converted(unit, std::string(si_unit), value);
+  if (!std::isfinite(si)) throw QuantityError(fmt::format("'{}' is too large a number", all));
+  return si;
 }
 
 Real convert_from_si(Real value, std::string_view si_unit, std::string_view shown_unit) {

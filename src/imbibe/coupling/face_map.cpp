@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 namespace {
 
@@ -26,8 +28,8 @@ void fill_angles(const YarnNetwork& network, FaceMap& map) {
   std::vector<int> touching(nodes, 0);
   for (std::size_t s = 0; s < segments; ++s) {
     const Fibre& fibre = network.type_of_segment(s).fibre;
-    map.cos_advancing[s] = static_cast<float>(std::cos(fibre.advancing_angle));
-    map.cos_receding[s] = static_cast<float>(std::cos(fibre.receding_angle));
+    map.cos_advancing[s] = static_cast<float>(portable::cos(fibre.advancing_angle));
+    map.cos_receding[s] = static_cast<float>(portable::cos(fibre.receding_angle));
   }
   for (const Edge& edge : network.edges) {
     if (edge.kind != EdgeKind::segment_pore) continue;

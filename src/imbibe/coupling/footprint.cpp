@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 namespace {
 
@@ -31,7 +33,7 @@ void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Re
   Real total = 0;
   map.near(p.x, p.y, !below, [&](Index k) {
     const Vec3& c = network.node_centre(k);
-    const Real w = face_kernel(std::hypot(p.x - c.x, p.y - c.y), map.reach);
+    const Real w = face_kernel(portable::hypot(p.x - c.x, p.y - c.y), map.reach);
     if (w <= 0) return;
     f.links.push_back({k, w * map.face_area[k]});
     total += f.links.back().share;
@@ -84,7 +86,7 @@ Real total_head(const Liquid& liquid, const Placement& placement, const Vec3& gr
     const Real fall = -dot(gravity, Vec3(x.x, x.y, x.z) - placement.origin);
     head = std::max(head, fall + 0.5 * squared_norm(Vec3(v.x, v.y, v.z)));
   }
-  const Real radius = std::cbrt(3 * liquid.mass() / (4 * pi * liquid.kind.density));
+  const Real radius = portable::cbrt(3 * liquid.mass() / (4 * pi * liquid.kind.density));
   return liquid.kind.density * head + 2 * liquid.kind.surface_tension / radius;
 }
 

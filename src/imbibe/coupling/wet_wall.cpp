@@ -1,5 +1,7 @@
 #include "imbibe/coupling/wet_wall.h"
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 
 Shape sheet_shape(const YarnNetwork& network, const Placement& placement) {
@@ -20,7 +22,7 @@ Wall wet_wall(const Shape& shape, const YarnNetwork& network, const Placement& p
     Real advancing = 0, receding = 0, weight = 0;
     map.near(p.x, p.y, p.z >= 0, [&](Index k) {
       const Vec3& c = network.node_centre(k);
-      const Real w = face_kernel(std::hypot(p.x - c.x, p.y - c.y), map.reach);
+      const Real w = face_kernel(portable::hypot(p.x - c.x, p.y - c.y), map.reach);
       advancing += w * cos_wet_face(map.cos_advancing[k], saturation[k]);
       receding += w * cos_wet_face(map.cos_receding[k], saturation[k]);
       weight += w;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/geometry/curve.h"
 
 namespace imbibe {
@@ -15,7 +16,7 @@ const std::array<Direction, tube_sides> corner_directions = [] {
   std::array<Direction, tube_sides> directions;
   for (int k = 0; k < tube_sides; ++k) {
     const Real angle = 2 * pi * k / tube_sides;
-    directions[static_cast<std::size_t>(k)] = {std::cos(angle), std::sin(angle)};
+    directions[static_cast<std::size_t>(k)] = {portable::cos(angle), portable::sin(angle)};
   }
   return directions;
 }();
@@ -56,7 +57,7 @@ Real mesh_deviation(const YarnNetwork& network) {
       const Vec3 before = network.points[i] - network.points[i - 1], after = network.points[i + 1] - network.points[i];
       least_cosine = std::min(least_cosine, dot(normalized(before), normalized(after)));
     }
-    const Real narrower = std::sqrt((1 + least_cosine) / 2) * std::cos(pi / tube_sides);
+    const Real narrower = std::sqrt((1 + least_cosine) / 2) * portable::cos(pi / tube_sides);
     largest = std::max(largest, radius_of_yarn(network, y) * (1 - narrower));
   }
   return largest;

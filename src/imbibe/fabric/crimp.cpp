@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 
 Real least_span(Real height_change, Real radius_from, Real radius_to) {
@@ -15,7 +17,7 @@ CrimpCurve crimp_curve(Real span, Real from, Real to, Real radius_from, Real rad
   if (h <= 0) return curve;
   // (radii - h, span) is (radii, straight) turned by theta.
   curve.straight = std::sqrt(std::max(span * span - (2 * radii - h) * h, Real(0)));
-  curve.angle = std::atan2(span, radii - h) - std::atan2(curve.straight, radii);
+  curve.angle = portable::atan2(span, radii - h) - portable::atan2(curve.straight, radii);
   curve.length = radii * curve.angle + curve.straight;
   return curve;
 }
@@ -27,25 +29,25 @@ CrimpPoint point_at(const CrimpCurve& c, Real arc) {
   if (arc < first) {
     const Real a = arc / c.radius_from;
     // 1 - cos a = 2 sin^2(a/2): exact for small angles too.
-    const Real half = std::sin(a / 2);
-    return {c.radius_from * std::sin(a), c.from + sign * c.radius_from * 2 * half * half};
+    const Real half = portable::sin(a / 2);
+    return {c.radius_from * portable::sin(a), c.from + sign * c.radius_from * 2 * half * half};
   }
   if (arc <= second) {
-    const Real along = c.radius_from * std::sin(c.angle) + (arc - first) * std::cos(c.angle);
-    const Real up = c.radius_from * (1 - std::cos(c.angle)) + (arc - first) * std::sin(c.angle);
+    const Real along = c.radius_from * portable::sin(c.angle) + (arc - first) * portable::cos(c.angle);
+    const Real up = c.radius_from * (1 - portable::cos(c.angle)) + (arc - first) * portable::sin(c.angle);
     return {along, c.from + sign * up};
   }
-  const Real a = (c.length - arc) / c.radius_to, half = std::sin(a / 2);
-  return {c.span - c.radius_to * std::sin(a), c.to - sign * c.radius_to * 2 * half * half};
+  const Real a = (c.length - arc) / c.radius_to, half = portable::sin(a / 2);
+  return {c.span - c.radius_to * portable::sin(a), c.to - sign * c.radius_to * 2 * half * half};
 }
 
 Real arc_at(const CrimpCurve& c, Real along) {
   if (c.angle <= 0) return along;
-  const Real bend = c.radius_from * std::sin(c.angle);
-  if (along < bend) return c.radius_from * std::asin(along / c.radius_from);
-  const Real second = c.span - c.radius_to * std::sin(c.angle);
-  if (along <= second) return c.radius_from * c.angle + (along - bend) / std::cos(c.angle);
-  return c.length - c.radius_to * std::asin(std::min((c.span - along) / c.radius_to, Real(1)));
+  const Real bend = c.radius_from * portable::sin(c.angle);
+  if (along < bend) return c.radius_from * portable::asin(along / c.radius_from);
+  const Real second = c.span - c.radius_to * portable::sin(c.angle);
+  if (along <= second) return c.radius_from * c.angle + (along - bend) / portable::cos(c.angle);
+  return c.length - c.radius_to * portable::asin(std::min((c.span - along) / c.radius_to, Real(1)));
 }
 
 }  // namespace imbibe

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 
 namespace imbibe {
 
@@ -28,7 +29,7 @@ Real throat_radius(Real opening_x, Real opening_y) {
 }
 
 ThroatCapillarity throat_capillarity(Real throat, Real surface_tension, Real angle, Real density, Real gravity) {
-  const Real pressure = 2 * surface_tension * std::cos(angle) / throat;
+  const Real pressure = 2 * surface_tension * portable::cos(angle) / throat;
   return {pressure, pressure / (density * gravity), density * gravity * throat * throat / surface_tension};
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 namespace {
 
@@ -22,7 +24,7 @@ void append_ring(const YarnNetwork& net, Index yarn, Index point, int sides, Tri
   const Real radius = net.yarn_types[net.yarn_type[yarn]].radius;
   for (int k = 0; k < sides; ++k) {
     const Real angle = 2 * pi * k / sides;
-    mesh.vertices.push_back(net.points[point] + radius * (std::cos(angle) * side + std::sin(angle) * up));
+    mesh.vertices.push_back(net.points[point] + radius * (portable::cos(angle) * side + portable::sin(angle) * up));
   }
 }
 
@@ -59,7 +61,7 @@ Vec3 yarn_direction(const YarnNetwork& net, Index yarn, Index point) {
   return normalized(net.points[after] - net.points[before]);
 }
 
-Real tube_deviation(Real radius, int sides) { return radius * (1 - std::cos(pi / sides)); }
+Real tube_deviation(Real radius, int sides) { return radius * (1 - portable::cos(pi / sides)); }
 
 void append_segment_tube(const YarnNetwork& net, Index segment, const TubeParams& params, TriangleMesh& mesh) {
   check(net, params);

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "imbibe/core/error.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/fabric/wif_sections.h"
 
 namespace imbibe {
@@ -203,7 +205,7 @@ WeaveDraft draw_down(const WifFile& wif, const std::vector<Row>& threading, cons
 
 }  // namespace
 
-Real linear_from_srgb(Real c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+Real linear_from_srgb(Real c) { return c <= 0.04045 ? c / 12.92 : portable::pow((c + 0.055) / 1.055, 2.4); }
 
 WifFile parse_wif(std::string_view text, const std::string& file) {
   Reader r(text, file);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/core/random.h"
 #include "imbibe/core/types.h"
 #include "imbibe/geometry/bounds.h"
@@ -42,7 +43,7 @@ inline std::vector<Vec3> directions_on_sphere(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const Real z = 1 - (2 * static_cast<Real>(i) + 1) / static_cast<Real>(count);
     const Real r = std::sqrt(1 - z * z), angle = golden_angle * static_cast<Real>(i);
-    points[i] = {r * std::cos(angle), r * std::sin(angle), z};
+    points[i] = {r * portable::cos(angle), r * portable::sin(angle), z};
   }
   return points;
 }
@@ -58,7 +59,7 @@ inline Vec3 random_in(const Bounds& box, const RandomCounter& counter, std::uint
 inline Vec3 random_direction(const RandomCounter& counter, std::uint64_t stream = 0) {
   const Real z = 2 * uniform(counter, stream) - 1, angle = 2 * pi * uniform(counter, stream + 1);
   const Real r = std::sqrt(std::max(0.0, 1 - z * z));
-  return {r * std::cos(angle), r * std::sin(angle), z};
+  return {r * portable::cos(angle), r * portable::sin(angle), z};
 }
 
 }  // namespace imbibe

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/geometry/mesh_distance.h"
 #include "imbibe/geometry/mesh_file.h"
 
@@ -122,7 +123,7 @@ Shape make_shape(const ShapeSpec& spec, const std::filesystem::path& folder) {
 
 void apply_transform(TriangleMesh& mesh, const MeshTransform& t) {
   const auto turn = [](Real& a, Real& b, Real angle) {
-    const Real c = std::cos(angle), s = std::sin(angle), old = a;
+    const Real c = portable::cos(angle), s = portable::sin(angle), old = a;
     a = c * old - s * b;
     b = s * old + c * b;
   };

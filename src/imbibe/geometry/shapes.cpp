@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/geometry/bounds.h"
 #include "imbibe/geometry/mesh_distance.h"
 
@@ -48,13 +49,13 @@ SurfaceSample nearest_on_profile(std::span<const HalfPlane> corners, const HalfP
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
     const HalfPlane &a = corners[k], &b = corners[k + 1];
     const HalfPlane side{b.across - a.across, b.along - a.along}, from{p.across - a.across, p.along - a.along};
-    const Real length = std::hypot(side.across, side.along);
+    const Real length = portable::hypot(side.across, side.along);
     const HalfPlane out{side.along / length, -side.across / length};
     const Real height = from.across * out.across + from.along * out.along;
     if (height > inside) inside = height, inside_normal = out;
     const Real t = std::clamp((from.across * side.across + from.along * side.along) / (length * length), 0.0, 1.0);
     const HalfPlane gap{from.across - t * side.across, from.along - t * side.along};
-    const Real distance = std::hypot(gap.across, gap.along);
+    const Real distance = portable::hypot(gap.across, gap.along);
     if (distance < outside) {
       outside = distance;
       // Beside the face (or on it): its own normal, free of rounding. Past an end: away from the corner.

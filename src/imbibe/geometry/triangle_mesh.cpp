@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 namespace {
 
@@ -107,7 +109,7 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const Vec3 u = normalized(mesh.corner(t, (k + 1) % 3) - mesh.corner(t, k));
       const Vec3 w = normalized(mesh.corner(t, (k + 2) % 3) - mesh.corner(t, k));
-      normals[mesh.triangles[t][static_cast<std::size_t>(k)]] += std::atan2(norm(cross(u, w)), dot(u, w)) * normal;
+      normals[mesh.triangles[t][static_cast<std::size_t>(k)]] += portable::atan2(norm(cross(u, w)), dot(u, w)) * normal;
     }
   }
   for (Vec3& n : normals) n = normalized(n);

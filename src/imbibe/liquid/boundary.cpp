@@ -6,6 +6,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/geometry/bounds.h"
 #include "imbibe/liquid/neighbours.h"
 
@@ -98,7 +99,7 @@ SolidSum solid_sum(const Cylinder& s, const Vec3& p, Real h) {
 
 SolidSum solid_sum(const Cone& s, const Vec3& p, Real h) {
   const AxialPoint a = axial(s.base, s.axis, p);
-  const Real slant = std::hypot(s.radius, s.height);
+  const Real slant = portable::hypot(s.radius, s.height);
   const Real radial = s.height / slant, axial_part = s.radius / slant;  // outward normal of the side
   const Real distance = (a.radius - s.radius) * radial + a.height * axial_part;
   // Curved like a circle of the foot point's distance from the axis; near the apex no more than a ball of radius H/2.
@@ -199,8 +200,8 @@ SolidSum sheet_sum(const Sheet& s, const SheetPlace& at, const Vec3& p, Real h) 
 }
 
 WallAngles angles_of(const WallMaterial& material) {
-  const auto advancing = static_cast<float>(std::cos(material.contact_angle));
-  return {advancing, material.receding_angle < 0 ? advancing : static_cast<float>(std::cos(material.receding_angle))};
+  const auto advancing = static_cast<float>(portable::cos(material.contact_angle));
+  return {advancing, material.receding_angle < 0 ? advancing : static_cast<float>(portable::cos(material.receding_angle))};
 }
 
 bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample& out, std::uint32_t& side) {

@@ -5,6 +5,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/liquid/kernel.h"
 
 namespace imbibe {
@@ -95,14 +96,14 @@ std::vector<SurfacePoint> surface_points(const ColourField& field, const Vec3& c
     const Real polar = pi * (static_cast<Real>(k) + 0.5) / polars;
     for (int a = 0; a < azimuths; ++a) {
       const Real turn = 2 * pi * (a + 0.5 * static_cast<Real>(k % 2)) / azimuths;
-      const Vec3 way{std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
+      const Vec3 way{portable::sin(polar) * portable::cos(turn), portable::sin(polar) * portable::sin(turn), portable::cos(polar)};
       // A ray that ends at the wall finds no surface; do not follow it there.
       if (way.z < 0 && (centre.z - lowest) / -way.z < field.support()) continue;
       const Real length = field.end_of_liquid(centre, way);
       const Vec3 x = centre + way * length;
       if (length < 0 || x.z < lowest) continue;
-      rings[k].push_back({std::hypot(x.x - centre.x, x.y - centre.y), x.z,
-                          std::sin(polar) * length * length, std::sin(polar), way.z});
+      rings[k].push_back({portable::hypot(x.x - centre.x, x.y - centre.y), x.z,
+                          portable::sin(polar) * length * length, portable::sin(polar), way.z});
     }
   }, 1);
   std::vector<SurfacePoint> all;
@@ -122,7 +123,7 @@ Deviation deviation(const SessileShape& shape, Real c, Real r, Real depth) {
     const Real dr = r - p.radius, dz = depth - p.depth, square = dr * dr + dz * dz;
     if (square >= best) continue;
     best = square;
-    d = {dr * std::sin(p.slope) - dz * std::cos(p.slope), 2 * shape.apex_curvature + c * p.depth};
+    d = {dr * portable::sin(p.slope) - dz * portable::cos(p.slope), 2 * shape.apex_curvature + c * p.depth};
   }
   return d;
 }
@@ -200,21 +201,21 @@ Real slope_angle(const ColourField& field, const Vec3& centre, const SessileShap
     Real sum = 0, found = 0;
     for (int a = 0; a < azimuths; ++a) {
       const Real turn = 2 * pi * a / azimuths;
-      const Real r = field.end_of_liquid({centre.x, centre.y, z}, {std::cos(turn), std::sin(turn), 0});
+      const Real r = field.end_of_liquid({centre.x, centre.y, z}, {portable::cos(turn), portable::sin(turn), 0});
       if (r > 0) sum += r, found += 1;
     }
     const ProfilePoint fitted = profile_at(shape, z);
     // The level lies inside along the normal; along the horizontal that is longer by 1/sin(phi).
     const Real inside =
         level_depth * field.support() * field.support() * (2 * shape.apex_curvature + c * fitted.depth);
-    const Real r = sum / std::max(found, 1.0) + inside / std::max(0.2, std::sin(fitted.slope));
+    const Real r = sum / std::max(found, 1.0) + inside / std::max(0.2, portable::sin(fitted.slope));
     differences[k] = {z, r * r - fitted.radius * fitted.radius};
   }, 1);
   const auto [difference, difference_slope] = line_through(differences);
   const Real base = std::sqrt(std::max(shape.base_radius * shape.base_radius + difference, 0.0));
   // d(r^2)/dz = 2 r dr/dz, and dr/dz = -cot(theta) with z upwards.
-  const Real fitted_slope = -2 * shape.base_radius / std::tan(shape.angle);
-  return std::atan2(2 * base, -(fitted_slope + difference_slope));
+  const Real fitted_slope = -2 * shape.base_radius / portable::tan(shape.angle);
+  return portable::atan2(2 * base, -(fitted_slope + difference_slope));
 }
 
 }  // namespace
@@ -234,7 +235,7 @@ DropMeasure measure_sessile_drop(const Liquid& liquid, const Plane& wall, Real g
   const Real nominal = liquid.mass() / liquid.kind.density;
   m.centre_angle = angle_of_centre_height(centre.z, nominal, c);
   const SessileShape start = sessile_shape(nominal, m.centre_angle, c);
-  ProfileFit fit(std::move(points), c, field.support(), 0.01 * std::cbrt(nominal));
+  ProfileFit fit(std::move(points), c, field.support(), 0.01 * portable::cbrt(nominal));
   const SessileShape shape = fit.fit(start.apex_curvature, start.height);
   m.fit_angle = shape.angle, m.base_radius = shape.base_radius, m.height = shape.height, m.volume = shape.volume;
   m.apex_curvature = shape.apex_curvature, m.fit_deviation = fit.rms();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/portable.h"
 
 namespace imbibe {
 
@@ -18,9 +19,9 @@ struct Ode {
   Real b, c;
 
   State slope(const State& y) const {
-    const Real sine = std::sin(y.phi), section = pi * y.r * y.r;
+    const Real sine = portable::sin(y.phi), section = pi * y.r * y.r;
     const Real around = y.r > 0 ? sine / y.r : b;
-    return {std::cos(y.phi), sine, 2 * b + c * y.z - around, section * sine, section * y.z * sine,
+    return {portable::cos(y.phi), sine, 2 * b + c * y.z - around, section * sine, section * y.z * sine,
             section * y.r * y.r / 2 * sine};
   }
 
@@ -73,11 +74,11 @@ SessileShape sessile_profile(Real apex_curvature, Real c, Real angle, Real heigh
 
 SessileShape sessile_shape(Real volume, Real angle, Real c) {
   IMBIBE_ASSERT(volume > 0 && angle > 0 && angle < pi && c >= 0);
-  const Real size = std::cbrt(volume), infinite = std::numeric_limits<Real>::infinity();
+  const Real size = portable::cbrt(volume), infinite = std::numeric_limits<Real>::infinity();
   const auto with = [&](Real b) { return sessile_profile(b, c, angle, infinite, 0.01 * size); };
   // A cap without gravity has the most curved apex; from there down until the volume is too large.
-  const Real cosine = std::cos(angle);
-  Real high = std::cbrt(pi / 3 * (2 + cosine) * (1 - cosine) * (1 - cosine) / volume) * (1 + 1e-9);
+  const Real cosine = portable::cos(angle);
+  Real high = portable::cbrt(pi / 3 * (2 + cosine) * (1 - cosine) * (1 - cosine) / volume) * (1 + 1e-9);
   if (c == 0) return with(high / (1 + 1e-9));
   Real low = high;
   while (with(low).volume < volume) low /= 2;

@@ -1,5 +1,7 @@
 #include "imbibe/liquid/kernel.h"
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 
 namespace {
@@ -23,7 +25,7 @@ PlaneIntegrals plane_integrals(Real d, Real h) {
 }  // namespace
 
 Real lattice_excess(Real support_in_spacings) {
-  const Real edge = std::cbrt(2.0), h = support_in_spacings;  // two particles a cell of volume 2
+  const Real edge = portable::cbrt(2.0), h = support_in_spacings;  // two particles a cell of volume 2
   const int reach = static_cast<int>(std::ceil(h / edge)) + 1;
   Real sum = 0;
   for (int z = -2 * reach; z <= 2 * reach; ++z) {
@@ -50,7 +52,7 @@ Real half_space_shear(Real distance, Real support) {
   // Antiderivatives of (1-t)^3 times t^3, t and 1/t.
   const auto cubic = [](Real t) { return t * t * t * t * (1.0 / 4 - 3.0 / 5 * t + t * t / 2 - t * t * t / 7); };
   const auto linear = [](Real t) { return t * t * (1.0 / 2 - t + 3.0 / 4 * t * t - t * t * t / 5); };
-  const auto inverse = [](Real t) { return std::log(t) - 3 * t + 1.5 * t * t - t * t * t / 3; };
+  const auto inverse = [](Real t) { return portable::log(t) - 3 * t + 1.5 * t * t - t * t * t / 3; };
   const Real q2 = q * q;
   const Real integral =
       cubic(1) - cubic(q) - 2 * q2 * (linear(1) - linear(q)) + q2 * q2 * (inverse(1) - inverse(q));

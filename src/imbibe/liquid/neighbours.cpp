@@ -189,9 +189,9 @@ std::size_t search(const Neighbours& n, std::size_t i, const Candidates& c, std:
     const unsigned pattern = simd::bits(near);
     if (pattern == 0) continue;
     const Ints lane = simd::load_int(compress_table.lane[pattern]);
-    const Ints ids = __builtin_shuffle(id, lane);
+    const Ints ids = simd::permuted(id, lane);
     std::memcpy(&index[found], &ids, sizeof ids);
-    simd::store(&square[found], __builtin_shuffle(d2, lane));
+    simd::store(&square[found], simd::permuted(d2, lane));
     found += static_cast<std::size_t>(std::popcount(pattern));
   }
   return found;

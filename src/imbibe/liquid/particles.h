@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/core/types.h"
 
 namespace imbibe {
@@ -53,7 +54,7 @@ struct Liquid {
   Real particle_mass = 0;  // kg, the same for all
   Index next_id = 0;
   Particles particles;
-  Real spacing() const { return std::cbrt(particle_mass / kind.density); }  // m, dx
+  Real spacing() const { return portable::cbrt(particle_mass / kind.density); }  // m, dx
   Real mass() const { return particle_mass * static_cast<Real>(particles.size()); }
 };
 

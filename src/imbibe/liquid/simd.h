@@ -49,6 +49,17 @@ inline unsigned bits(Ints mask) {
   return b;
 #endif
 }
+// Lane l of the result is lane from[l] of v.
+template <class Vector>
+inline Vector permuted(Vector v, Ints from) {
+#ifdef __clang__  // has no __builtin_shuffle by a variable
+  Vector r;
+  for (int l = 0; l < lanes; ++l) r[l] = v[from[l]];
+  return r;
+#else
+  return __builtin_shuffle(v, from);
+#endif
+}
 inline Floats dot(const Floats3& a, const Floats3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // Eight records of four floats.

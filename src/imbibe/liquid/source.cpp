@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/portable.h"
 
 namespace imbibe {
 
@@ -27,7 +28,7 @@ std::vector<Vec3> ball_lattice(std::size_t count, Real spacing) {
     Real square;
     Vec3 at;
   };
-  const Real radius = std::cbrt(3.0 / (4 * pi) * static_cast<Real>(count));
+  const Real radius = portable::cbrt(3.0 / (4 * pi) * static_cast<Real>(count));
   const int reach = static_cast<int>(std::ceil(radius)) + 2;
   std::vector<Point> points;
   for (int z = -reach; z < reach; ++z) {
@@ -94,7 +95,7 @@ std::size_t particle_count(const Source& source, const Liquid& liquid) {
 }
 
 Bounds bounds_of(const Source& source) {
-  const Real radius = std::cbrt(3 * source.volume / (4 * pi));
+  const Real radius = portable::cbrt(3 * source.volume / (4 * pi));
   const Vec3 half = source.form == SourceForm::box ? 0.5 * source.size : Vec3{radius, radius, radius};
   return {source.centre - half, source.centre + half};
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/core/quantity.h"
 #include "imbibe/scene/placement_checks.h"
 
@@ -253,10 +254,10 @@ SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind) {
     for (const Source& s : sources_of(scene))
       volume += releases(s, scene.duration) * (s.form == SourceForm::box ? s.size.x * s.size.y * s.size.z : s.volume);
     e.particles = volume * kind.density / particle_mass;
-    e.spacing = std::cbrt(particle_mass / kind.density);
+    e.spacing = portable::cbrt(particle_mass / kind.density);
     if (kind.surface_tension > 0)
       e.capillary_step = scene.liquid.solver.capillary_factor *
-                         std::sqrt(kind.density * std::pow(e.spacing, 3) / (2 * pi * kind.surface_tension));
+                         std::sqrt(kind.density * portable::pow(e.spacing, 3) / (2 * pi * kind.surface_tension));
   }
   double fabric_bytes = 0, points = 0;
   for (const TextileSpec& textile : scene.textiles) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/core/quantity.h"
 #include "imbibe/liquid/liquid_kind.h"
 
@@ -82,7 +83,7 @@ DropNumbers drop_numbers(const Source& source, const Liquid& liquid, Real gravit
   const LiquidKind& k = liquid.kind;
   const Real volume = source.form == SourceForm::box ? source.size.x * source.size.y * source.size.z : source.volume;
   const Real speed = norm(source.velocity);
-  n.radius = std::cbrt(3 * volume / (4 * pi));
+  n.radius = portable::cbrt(3 * volume / (4 * pi));
   n.mass = volume * k.density;
   n.particles = static_cast<Real>(particle_count(source, liquid));
   n.particles_across = 2 * n.radius / liquid.spacing();

@@ -7,13 +7,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 namespace {
 
 std::string entry_sentence(const Textile& textile, std::size_t type) {
   const YarnType& yarn = textile.fabric->network.yarn_types[type];
   const YarnWetting& wetting = textile.model->yarns[type];
-  const Real angle = degrees(std::acos(std::clamp(wetting.cos_advancing, -1.0, 1.0)));
+  const Real angle = degrees(portable::acos(std::clamp(wetting.cos_advancing, -1.0, 1.0)));
   const std::string who = fmt::format("{} at {:.0f}°", yarn.fibre.name, angle);
   if (yarn.monofilament)
     return fmt::format("{}: a monofilament, which holds no liquid between fibres", who);

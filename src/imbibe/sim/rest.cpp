@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 
 namespace imbibe {
 namespace {
@@ -38,7 +39,7 @@ Moments moments_of(const Particles& p) {
 }
 
 Real radius_of_drop(const Liquid& liquid, Real particles) {
-  return std::cbrt(3 * particles * liquid.particle_mass / (4 * pi * liquid.kind.density));
+  return portable::cbrt(3 * particles * liquid.particle_mass / (4 * pi * liquid.kind.density));
 }
 
 Index root_of(std::vector<Index>& parent, Index i) {

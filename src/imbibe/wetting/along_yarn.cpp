@@ -2,15 +2,17 @@
 
 #include <algorithm>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 namespace {
-const Real ln_1000 = std::log(Real(1000));
+const Real ln_1000 = portable::log(Real(1000));
 
 // x^power; by squaring where the power is a small whole number, as 3 lambda + 1 is for whole lambda (this is called
 // for every link between yarn and pore in every Newton iteration).
 Real raised_to(Real x, Real power) {
   const int whole = power <= 64 ? static_cast<int>(power) : 0;
-  if (static_cast<Real>(whole) != power) return std::pow(x, power);
+  if (static_cast<Real>(whole) != power) return portable::pow(x, power);
   Real result = 1;
   for (int bits = whole; bits > 0; bits >>= 1, x *= x) {
     if (bits & 1) result *= x;
@@ -34,26 +36,26 @@ Real mean_suction(Real surface_tension, Real cos_angle, Real fibre_radius, Real 
   return surface_tension * cos_angle * 2 * packing / (fibre_radius * (1 - packing));
 }
 
-Real entry_suction(Real mean, Real size_index) { return mean * std::pow(0.5, 1 / size_index); }
+Real entry_suction(Real mean, Real size_index) { return mean * portable::pow(0.5, 1 / size_index); }
 
 Sloped pressure_at(const Retention& r, Real saturation) {
   if (saturation >= 1) {
     const Real slope = (r.entry + r.open) / r.overfill;
     return {-r.entry + slope * (saturation - 1), slope};
   }
-  if (saturation <= driest) return {-r.entry * std::pow(driest, -1 / r.size_index), 0};
-  const Real suction = r.entry * std::pow(saturation, -1 / r.size_index);
+  if (saturation <= driest) return {-r.entry * portable::pow(driest, -1 / r.size_index), 0};
+  const Real suction = r.entry * portable::pow(saturation, -1 / r.size_index);
   return {-suction, suction / (r.size_index * saturation)};
 }
 
 Real saturation_at(const Retention& r, Real pressure) {
   if (pressure >= -r.entry) return 1 + (pressure + r.entry) * r.overfill / (r.entry + r.open);
-  return std::pow(-pressure / r.entry, -r.size_index);
+  return portable::pow(-pressure / r.entry, -r.size_index);
 }
 
 Real relative_permeability(Real saturation, Real size_index) {
   if (saturation >= 1) return 1;
-  return saturation <= 0 ? 0 : std::pow(saturation, 3 + 2 / size_index);
+  return saturation <= 0 ? 0 : portable::pow(saturation, 3 + 2 / size_index);
 }
 
 Sloped kirchhoff_potential(Real entry, Real size_index, Real pressure) {
@@ -66,12 +68,12 @@ Sloped kirchhoff_potential(Real entry, Real size_index, Real pressure) {
 
 Sloped kunzel_potential(Real saturation) {
   if (saturation >= 1) return {(1 - 1e-3) / ln_1000 + (saturation - 1), 1};
-  const Real diffusivity = std::exp((saturation - 1) * ln_1000);
+  const Real diffusivity = portable::exp((saturation - 1) * ln_1000);
   return {(diffusivity - 1e-3) / ln_1000, diffusivity};
 }
 
 Sloped printed_potential(Real saturation) {
-  const Real diffusivity = std::exp(-saturation * ln_1000);
+  const Real diffusivity = portable::exp(-saturation * ln_1000);
   return {(1 - diffusivity) / ln_1000, diffusivity};
 }
 

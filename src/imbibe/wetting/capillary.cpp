@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 
 Real pore_throat_radius(Real gap_x, Real gap_y) { return gap_x * gap_y / (gap_x + gap_y); }
@@ -21,7 +23,7 @@ Real lambert_w0(Real x) {
   Real w = -1 + p - p * p / 3 + 11 * p * p * p / 72;
   if (p < 1e-5) return w;
   for (int i = 0; i < 50; ++i) {
-    const Real exponential = std::exp(w), f = w * exponential - x;
+    const Real exponential = portable::exp(w), f = w * exponential - x;
     const Real step = f / (exponential * (w + 1) - (w + 2) * f / (2 * w + 2));
     w -= step;
     if (std::abs(step) <= 1e-15 * (1 + std::abs(w))) break;
@@ -34,7 +36,7 @@ Real tube_rise(Real surface_tension, Real cos_angle, Real radius, Real density, 
   const Real a = surface_tension * radius * cos_angle / (4 * viscosity);
   const Real b = density * gravity * radius * radius / (8 * viscosity);
   if (b == 0) return std::sqrt(2 * a * time);
-  return a / b * (1 + lambert_w0(-std::exp(-1 - b * b * time / a)));
+  return a / b * (1 + lambert_w0(-portable::exp(-1 - b * b * time / a)));
 }
 
 Real tube_conductance(Real radius, Real viscosity, Real filled) {

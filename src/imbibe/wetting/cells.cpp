@@ -5,6 +5,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 
 namespace imbibe {
 namespace {
@@ -24,8 +25,8 @@ struct Drag {
 Drag drag_over(Real resistance, Real t) {
   const Real z = resistance * t;
   if (z < 1e-4) return {1 - z, t * (1 - z / 2), t * t / 2 * (1 - z / 3)};
-  const Real first = -std::expm1(-z) / resistance;
-  return {std::exp(-z), first, (t - first) / resistance};
+  const Real first = -portable::expm1(-z) / resistance;
+  return {portable::exp(-z), first, (t - first) / resistance};
 }
 
 void sum_contents(const CellGrid& grid, CellContents& c) {
@@ -142,7 +143,7 @@ void remove_parcels(CellContents& c, const std::vector<std::uint8_t>& gone) {
 // Whole parcels leave the cells that owe them, those that gravity has carried farthest first.
 void leak(const Mover& mover, const std::vector<Real>& before, Real dt, CellContents& c, CellStepReport& report) {
   const CellGrid& grid = mover.grid;
-  const Real share = -std::expm1(-dt / mover.params.leak_time);
+  const Real share = -portable::expm1(-dt / mover.params.leak_time);
   bool any = false;
   for (std::size_t i = 0; i < grid.cells(); ++i) {
     const Real excess = c.content_kg[i] - grid.capacity(i);
@@ -190,7 +191,7 @@ void dry(const CellGrid& grid, const CellParams& params, Real rate, Real parcel_
     // At the full rate down to the knee, then exponentially.
     const Real until_knee = std::max(0.0, content - knee) / full;
     Real left = content - full * std::min(dt, until_knee);
-    if (dt > until_knee) left = knee > 0 ? left * std::exp(-full * (dt - until_knee) / knee) : 0;
+    if (dt > until_knee) left = knee > 0 ? left * portable::exp(-full * (dt - until_knee) / knee) : 0;
     keep[i] = left / content;
   }
   std::vector<std::uint8_t> gone(c.parcels(), 0);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 
 Real meniscus_pressure(Real surface_tension, Real angle, const PoreOpening& o, Real phi) {
-  const Real height = 1 - std::sin(phi);
-  return surface_tension * std::sin(angle + phi - pi) *
+  const Real height = 1 - portable::sin(phi);
+  return surface_tension * portable::sin(angle + phi - pi) *
          (1 / (0.5 * o.gap_x + o.radius_x * height) + 1 / (0.5 * o.gap_y + o.radius_y * height));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/wetting/isotherm.h"
 
 namespace imbibe {
@@ -13,7 +14,7 @@ constexpr Real psychrometer_constant = 6.62e-4;  // 1/K
 
 Real saturation_pressure(Real temperature) {
   const Real t = temperature - 273.15;
-  return 610.94 * std::exp(17.625 * t / (t + 243.04));
+  return 610.94 * portable::exp(17.625 * t / (t + 243.04));
 }
 
 Real saturated_vapour_density(Real temperature) {

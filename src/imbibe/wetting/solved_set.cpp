@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/wetting/face_back.h"
 #include "imbibe/wetting/transport_laws.h"
 
@@ -32,7 +33,7 @@ Real effective_entry(const WettingModel& m, const Work& w, Index local) {
   const Index node = w.active[local];
   const Real s = w.old_saturation[local];
   if (!m.params.hysteresis || s >= 1 || s <= driest) return m.entry[node];
-  return -w.pressure[local] * std::pow(s, 1 / m.size_index[node]);
+  return -w.pressure[local] * portable::pow(s, 1 / m.size_index[node]);
 }
 
 // The weight of the column from a node down to the lower of `faces`, Pa; a node without one gives off nothing.

@@ -1,12 +1,14 @@
 #include "imbibe/wetting/sorption.h"
 
+#define EIGEN_DONT_VECTORIZE  // its sums would depend on the width of the vectors, and on fused multiply-add
 #include <Eigen/Dense>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/portable.h"
 
 namespace imbibe {
 
-Real sorbed_share(Real rate, Real dt) { return -std::expm1(-rate * dt); }
+Real sorbed_share(Real rate, Real dt) { return -portable::expm1(-rate * dt); }
 
 RadialShells build_radial_shells(int count) {
   IMBIBE_ASSERT(count >= 2);
@@ -14,7 +16,7 @@ RadialShells build_radial_shells(int count) {
   shells.count = count;
   // Borders r_i = 1 - (1 - i/n)^1.8: about ten times finer at the surface than in the core for n = 16.
   std::vector<Real> border(count + 1), centre(count);
-  for (int i = 0; i <= count; ++i) border[i] = 1 - std::pow(1 - Real(i) / count, 1.8);
+  for (int i = 0; i <= count; ++i) border[i] = 1 - portable::pow(1 - Real(i) / count, 1.8);
   for (int i = 0; i < count; ++i) centre[i] = 0.5 * (border[i] + border[i + 1]);
   for (int i = 0; i < count; ++i) shells.share.push_back(border[i + 1] * border[i + 1] - border[i] * border[i]);
   // share_i dw_i/dt = sum of 2 r (dw/dr) over both borders (per unit of pi R^2 and D/R^2).
@@ -55,7 +57,7 @@ void advance_shells(const RadialShells& shells, std::span<const Real> regain, Re
   for (std::size_t m = 0; m < n; ++m) {
     Real amplitude = 0;
     for (std::size_t i = 0; i < n; ++i) amplitude += shells.to_modes[m * n + i] * (regain[i] - surface);
-    mode[m] = amplitude * std::exp(-shells.rates[m] * time);
+    mode[m] = amplitude * portable::exp(-shells.rates[m] * time);
   }
   for (std::size_t i = 0; i < n; ++i) {
     Real deviation = 0;

@@ -3,6 +3,7 @@
 // Tested through transport.h in tests/wetting/network_test.cpp.
 #pragma once
 
+#include "imbibe/core/portable.h"
 #include "imbibe/wetting/transport.h"
 
 namespace imbibe {
@@ -17,7 +18,7 @@ struct YarnPotential {
   Sloped operator()(Real p) const {
     if (model == TransportModel::physical) return kirchhoff_potential(entry, size_index, p);
     if (p >= -entry) return {kunzel_potential(1).value, 0};
-    const Real s = std::pow(entry / -p, size_index);
+    const Real s = portable::pow(entry / -p, size_index);
     const Sloped phi = kunzel_potential(s);
     return {phi.value, phi.slope * size_index * s / -p};
   }

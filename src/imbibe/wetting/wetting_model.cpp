@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/wetting/capillary.h"
 #include "imbibe/wetting/crossing.h"
 #include "imbibe/wetting/entry.h"
@@ -31,7 +32,7 @@ YarnWetting yarn_wetting(const YarnType& type, const WettingParams& p, const Wet
   const Fibre& fibre = type.fibre;
   YarnWetting yarn;
   yarn.void_share = type.monofilament ? 0 : type.void_share();
-  yarn.cos_advancing = std::cos(advancing_angle(fibre, liquid));
+  yarn.cos_advancing = portable::cos(advancing_angle(fibre, liquid));
   yarn.sorption_rate = sorption_rate(fibre.diffusivity, fibre.radius);
   yarn.shell_rate = fibre.diffusivity / (fibre.radius * fibre.radius);
   yarn.swelling_regain = fibre.swelling_regain();
@@ -49,7 +50,7 @@ YarnWetting yarn_wetting(const YarnType& type, const WettingParams& p, const Wet
   yarn.axial = axial_permeability(fibre.radius, type.packing, type.tortuosity_squared);
   yarn.transverse = transverse_permeability(fibre.radius, type.packing, type.tortuosity_squared);
   const auto entry = [&](Real angle) {
-    const Real inside = std::cos(std::min(pi, angle + p.pore_divergence));
+    const Real inside = portable::cos(std::min(pi, angle + p.pore_divergence));
     return entry_suction(mean_suction(liquid.surface_tension, inside, fibre.radius, type.packing), p.yarn_size_index);
   };
   yarn.entry = entry(advancing_angle(fibre, liquid));
@@ -80,8 +81,8 @@ PoreSurroundings surroundings(const YarnNetwork& network, const WettingLiquid& l
     auto& sum = sums[pore];
     const std::size_t family = network.family_of_segment(segment) == Family::warp ? 0 : 2;
     sum[family] += type.radius, sum[family + 1] += 1;
-    sum[4] += std::cos(advancing_angle(type.fibre, liquid));
-    sum[5] += std::cos(receding_angle(type.fibre, liquid));
+    sum[4] += portable::cos(advancing_angle(type.fibre, liquid));
+    sum[5] += portable::cos(receding_angle(type.fibre, liquid));
   }
   for (std::size_t i = 0; i < pores; ++i) {
     const auto& sum = sums[i];
@@ -89,8 +90,8 @@ PoreSurroundings surroundings(const YarnNetwork& network, const WettingLiquid& l
     const Fibre fallback = network.yarn_types.empty() ? Fibre{} : network.yarn_types[0].fibre;
     result.warp_radius.push_back(sum[1] > 0 ? sum[0] / sum[1] : 0);
     result.weft_radius.push_back(sum[3] > 0 ? sum[2] / sum[3] : 0);
-    result.cosine.push_back(count > 0 ? sum[4] / count : std::cos(advancing_angle(fallback, liquid)));
-    result.cosine_receding.push_back(count > 0 ? sum[5] / count : std::cos(receding_angle(fallback, liquid)));
+    result.cosine.push_back(count > 0 ? sum[4] / count : portable::cos(advancing_angle(fallback, liquid)));
+    result.cosine_receding.push_back(count > 0 ? sum[5] / count : portable::cos(receding_angle(fallback, liquid)));
   }
   return result;
 }
@@ -185,7 +186,7 @@ void add_segments(WettingModel& m, const YarnNetwork& network) {
 void add_pores(WettingModel& m, const YarnNetwork& network, const PoreSurroundings& around) {
   const Real tension = m.liquid.surface_tension;
   for (std::size_t i = 0; i < m.pores; ++i) {
-    const Real cosine = std::clamp<Real>(around.cosine[i], -1, 1), angle = std::acos(cosine);
+    const Real cosine = std::clamp<Real>(around.cosine[i], -1, 1), angle = portable::acos(cosine);
     const PoreOpening opening{.gap_x = network.pore_opening_x[i], .gap_y = network.pore_opening_y[i],
                               .radius_x = around.warp_radius[i], .radius_y = around.weft_radius[i]};
     const Real throat = network.pore_throat[i];
@@ -448,8 +449,8 @@ Sloped hysteretic_pressure(const WettingModel& m, std::size_t node, Real s, Real
     return filling_pressure(m, node, s);
   }
   const Real index = m.size_index[node];
-  const Real draining = m.entry_receding[node] * std::pow(s, -1 / index);
-  const Real scanning = m.entry[node] * std::pow(top, -1 / index) * std::pow(top / s, scanning_power);
+  const Real draining = m.entry_receding[node] * portable::pow(s, -1 / index);
+  const Real scanning = m.entry[node] * portable::pow(top, -1 / index) * portable::pow(top / s, scanning_power);
   if (draining < scanning) return {-draining, draining / (index * s)};
   return {-scanning, scanning_power * scanning / s};
 }
