@@ -81,5 +81,10 @@ TEST(Quantity, ShownValuesReadBackAsTheyWere) {
   EXPECT_EQ(format_quantity(293.15, "K", "degC"), "20 degC");
 }
 
+TEST(Quantity, ThatIsTooLargeOnceConvertedOrHasAnEndlessUnitIsRefused) {
+  EXPECT_THROW(parse_quantity("1e308 km", "m"), QuantityError);
+  EXPECT_THROW(parse_quantity("1 " + std::string(100000, '('), "m"), QuantityError);
+}
+
 }  // namespace
 }  // namespace imbibe

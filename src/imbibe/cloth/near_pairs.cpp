@@ -3,6 +3,7 @@
 
 #include "imbibe/cloth/self_contact.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/geometry/bounds.h"
 
 namespace imbibe {
@@ -173,7 +174,7 @@ SelfOwners make_owners(const Sheet& sheet) {
       if (seen.emplace(std::array{a, b}, static_cast<Index>(owners.edges.size())).second) {
         owners.of_triangle[k].edge[c] = static_cast<Index>(owners.edges.size());
         owners.edges.push_back({a, b});
-        shortest = std::min(shortest, std::hypot(sheet.u[a] - sheet.u[b], sheet.v[a] - sheet.v[b]));
+        shortest = std::min(shortest, portable::hypot(sheet.u[a] - sheet.u[b], sheet.v[a] - sheet.v[b]));
       }
     }
   }
