@@ -99,8 +99,8 @@ int Reader::whole_or(const Section* section, const char* key, int otherwise, int
   return whole(section, *e, without_comment(e->value), least, most).value_or(otherwise);
 }
 
-std::vector<Row> Reader::rows(const Section* section, int last, const char* what, int least, int most, std::size_t fewest = 1,
-                      std::size_t largest = static_cast<std::size_t>(largest_wif_shafts)) {
+std::vector<Row> Reader::rows(const Section* section, int last, const char* what, int least, int most,
+                              std::size_t fewest, std::size_t largest) {
   std::vector<Row> out;
   if (section == nullptr) return out;
   std::map<int, int> seen;
