@@ -20,6 +20,7 @@
 #include "imbibe/io/run_folder.h"
 #include "imbibe/scene/builder.h"
 #include "imbibe/scene/library.h"
+#include "imbibe/scene/live_change.h"
 #include "imbibe/scene/scene.h"
 #include "imbibe/sim/checkpoint.h"
 #include "imbibe/sim/mechanism.h"
@@ -39,6 +40,7 @@ void on_signal(int number) { stop_signal = number; }
 struct RunArguments {
   std::string scene;
   std::string output;
+  std::string changes;
   std::vector<std::string> overrides;
   double until = -1;
   int threads = 0;
@@ -91,8 +93,9 @@ class RunSession {
     if (arguments.until > 0) scene_.duration = arguments.until;
     if (!arguments.output.empty()) folder_path_ = arguments.output;
     if (folder_path_.empty()) folder_path_ = free_run_folder(scene_file_);
-    data_folders_ = context.data_folders;
-    world_ = build();
+    if (!arguments.changes.empty()) changes_.emplace(read_changes(arguments.changes));
+    library_ = read_library(library_folders(scene_file_, context.data_folders));
+    world_ = build_world(scene_, library_);
     warn_of_little_space();
     const bool with_pictures = scene_.output.pictures && !arguments.no_pictures;
     std::optional<Stage> stage;  // of a resumed run: that of its first picture
@@ -128,7 +131,7 @@ class RunSession {
 
   int go() {
     ProgressWriter progress(std::cerr, progress_style(arguments_.progress));
-    const RunPlan plan = run_plan();
+    const RunPlan plan = run_plan(scene_);
     RunHooks hooks;
     hooks.at_output = [&](const World& world, const StepReport& report) { write(world, report); };
     hooks.after_step = [&](const World& world, const StepReport& report) {
@@ -142,9 +145,17 @@ class RunSession {
       // At an output time the output comes first: its row holds numbers of this step, which a checkpoint does not keep.
       if (!is_output_time(world)) checkpoint_when_due(world);
     };
-    hooks.stop_requested = [] { return stop_signal != 0; };
+    if (changes_) {
+      hooks.before_step = [&](World& world, Real& until) {
+        const bool changed = changes_->apply_due(scene_, world, library_, until);
+        plan.until = until;
+        return changed;
+      };
+    }
+    hooks.stop_requested = [&] { return stop_signal != 0 || (changes_ && changes_->ended()); };
     try {
-      const RunEnd end = run(world_, plan, hooks);
+      RunEnd end = run(world_, plan, hooks);
+      if (changes_ && changes_->ended()) end = RunEnd::finished;
       progress.finish();
       folder_->write_checkpoint(world_);
       close(end == RunEnd::finished ? RunStatus::done : RunStatus::interrupted,
@@ -175,8 +186,6 @@ class RunSession {
   }
 
  private:
-  World build() const { return build_world(scene_, read_library(library_folders(scene_file_, data_folders_))); }
-
   // The estimate is of the most that the run can write, so it is no reason to refuse.
   void warn_of_little_space() const {
     const double wanted = estimate_scene(scene_, world_.liquid.kind).disk_bytes, there = free_space(folder_path_);
@@ -185,28 +194,20 @@ class RunSession {
                    folder_path_.c_str(), there / 1e9);
   }
 
-  RunPlan run_plan() const {
-    RunPlan plan;
-    plan.until = scene_.duration;
-    plan.every = output_interval(scene_);
-    plan.max_steps = scene_.limits.max_steps ? static_cast<std::uint64_t>(*scene_.limits.max_steps) : 0;
-    if (scene_.limits.max_step) plan.step.max_step = *scene_.limits.max_step;
-    return plan;
-  }
-
   // world_ is half-way through a step that failed. Every step gives the same bits again, so the state before it is made
   // from the newest checkpoint (or from the start): at most a checkpoint's interval of work, and no second copy of the
   // world while all goes well.
   void keep_last_good_state() {
+    if (changes_) return;  // a log of changes reruns from the start only
     const std::uint64_t last = world_.step;
     world_ = World{};  // the room of one world is enough
-    world_ = build();
+    world_ = build_world(scene_, library_);
     const auto from = read_newest_checkpoint(folder_path_, world_);
     if (last > world_.step)
       std::fprintf(stderr, "making the last good state again: %llu steps from %s\n",
                    static_cast<unsigned long long>(last - world_.step),
                    from ? from->filename().c_str() : "the start");
-    if (!remake(world_, last, run_plan(), [] { return stop_signal != 0; })) return;
+    if (!remake(world_, last, run_plan(scene_), [] { return stop_signal != 0; })) return;
     folder_->write_checkpoint(world_);
     std::fprintf(stderr, "the state after step %llu, t = %.6g s, is kept as a checkpoint\n",
                  static_cast<unsigned long long>(world_.step), world_.time);
@@ -321,7 +322,9 @@ class RunSession {
   std::vector<std::string> data_folders_;
   fs::path scene_file_, folder_path_;
   Scene scene_;
+  Library library_;
   World world_;
+  std::optional<ChangeReplay> changes_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RunPictures> pictures_;
   double liquid_s_ = 0, wetting_s_ = 0, output_s_ = 0, peak_density_error_ = 0;
@@ -337,13 +340,18 @@ void add_run_command(CLI::App& app, CommandContext& context) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "simulate a scene into a run folder");
   command->add_option("scene", arguments->scene, "scene file; with --resume also a run folder")->required();
+  CLI::Option* resume =
+      command->add_flag("--resume", arguments->resume, "go on from the newest checkpoint of the run folder");
   command->add_option("-o,--output", arguments->output, "run folder; default runs/<scene>, numbered when taken");
   command->add_option("--set", arguments->overrides, "path=value: change a key of the scene")->allow_extra_args(false);
+  command
+      ->add_option("--changes", arguments->changes,
+                   "changes.jsonl of a live run: makes the same changes at the same steps, and ends where it ended")
+      ->excludes(resume);
   command->add_option("--until", arguments->until, "simulated seconds, in place of the scene's duration")
       ->check(CLI::PositiveNumber);
   command->add_option("--threads", arguments->threads, "0 = all cores; results do not depend on it")
       ->check(CLI::Range(0, 1024));
-  command->add_flag("--resume", arguments->resume, "go on from the newest checkpoint of the run folder");
   command->add_flag("--overwrite", arguments->overwrite, "replace an earlier run in the folder given with -o");
   command->add_flag("--no-pictures", arguments->no_pictures, "no pictures and no film");
   command->add_option("--progress", arguments->progress, "auto | lines | json")

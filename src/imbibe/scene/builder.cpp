@@ -274,7 +274,7 @@ SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind) {
   return e;
 }
 
-World build_world(const Scene& scene, const Library& library) {
+World build_world(const Scene& scene, const Library& library, const std::function<void(World&)>& continue_sources) {
   std::vector<Problem> problems;
   World world;
   world.liquid.kind = liquid_of(scene, library, problems);
@@ -291,6 +291,7 @@ World build_world(const Scene& scene, const Library& library) {
   world.air = {scene.air.temperature, scene.air.humidity, scene.air.mass_transfer};
   world.liquid_params = scene.liquid.solver;
   world.sources = sources_of(scene);
+  if (continue_sources) continue_sources(world);
   for (std::size_t i = 0; i < scene.textiles.size(); ++i) add_textile(scene, i, library, world, problems);
   for (std::size_t i = 0; i < scene.solids.size(); ++i) add_solid(scene, i, world, problems);
   const bool all_built = world.textiles.size() == scene.textiles.size() && world.solids.size() == scene.solids.size();

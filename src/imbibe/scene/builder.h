@@ -4,6 +4,7 @@
 // is allocated). Tested in tests/scene/builder_test.cpp.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ double allowed_memory(const Scene& scene);
 // The drops, boxes and droppers of the scene as sources.
 std::vector<Source> sources_of(const Scene& scene);
 
-World build_world(const Scene& scene, const Library& library);
+// `continue_sources`, when given, brings the new world's sources to where those of a running one are, before placements
+// are checked: what has fallen already needs no room (scene/live_change.h).
+World build_world(const Scene& scene, const Library& library,
+                  const std::function<void(World&)>& continue_sources = nullptr);
 
 }  // namespace imbibe

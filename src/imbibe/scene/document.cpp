@@ -368,6 +368,12 @@ void set_at_path(DataNode& root, const std::string& path, const DataNode& value,
   DataNode* at = &root;
   for (const PathStep& step : steps) {
     if (step.index) {
+      if (*step.index == 0 && at->kind == Kind::null) at->kind = Kind::list;
+      if (at->kind == Kind::list && *step.index == at->items.size()) {
+        at = &at->items.emplace_back();
+        at->place = place;
+        continue;
+      }
       if (at->kind != Kind::list || *step.index >= at->items.size()) {
         problems.push_back(problem_at(place, path, fmt::format("there is no item [{}]: the list has {}", *step.index,
                                                                at->kind == Kind::list ? at->items.size() : 0)));

@@ -58,7 +58,7 @@ DataNode read_document(const std::filesystem::path& file, std::vector<Problem>& 
 // Applies `a.b[0].c=value` (value in YAML) as from the command line: later overrides earlier.
 void apply_override(DataNode& root, const std::string& assignment, std::vector<Problem>& problems);
 
-// Sets the node at a dotted path, making maps on the way; list items must exist.
+// Sets the node at a dotted path, making maps on the way; the index one past the end of a list appends.
 void set_at_path(DataNode& root, const std::string& path, const DataNode& value, const Place& place,
                  std::vector<Problem>& problems);
 

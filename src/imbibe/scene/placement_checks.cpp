@@ -84,6 +84,7 @@ void check_overlaps(const Scene& scene, const std::vector<Source>& sources, std:
 
 void check_source(const Scene& scene, const World& world, std::size_t i, std::vector<Problem>& problems) {
   const Source& s = world.sources[i];
+  if (s.emitted >= s.count) return;  // it has fallen already, in a running world
   const std::string key = key_of_source(scene, i);
   const auto fail = [&](const std::string& message) {
     problems.push_back(scene_problem(scene, key + ".centre", message));

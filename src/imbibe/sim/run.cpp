@@ -21,18 +21,20 @@ RunEnd run(World& world, const RunPlan& plan, const RunHooks& hooks) {
   if (hooks.at_output) hooks.at_output(world, report);
   StepOptions options = plan.step;
   const std::uint64_t first_step = world.step;
-  while (world.time < plan.until) {
-    options.until = next_output(world.time, plan.every, plan.until);
+  Real until = plan.until;
+  for (;;) {
+    if (hooks.before_step && hooks.before_step(world, until)) scratch = StepScratch{};
+    if (hooks.stop_requested && hooks.stop_requested()) return world.time < until ? RunEnd::stopped : RunEnd::finished;
+    if (world.time >= until) return RunEnd::finished;
+    options.until = next_output(world.time, plan.every, until);
     report = step(world, options, scratch);
     const bool reached = world.time >= options.until;
     if (hooks.after_step) hooks.after_step(world, report);
     if (reached && hooks.at_output) hooks.at_output(world, report);
-    if (hooks.stop_requested && hooks.stop_requested()) return RunEnd::stopped;
     if (plan.max_steps > 0 && world.step - first_step >= plan.max_steps)
       throw InputError(fmt::format("stopped after {} steps at t = {:.6g} s: the limit limits.max_steps is reached",
                                    plan.max_steps, world.time));
   }
-  return RunEnd::finished;
 }
 
 bool remake(World& world, std::uint64_t step, RunPlan plan, const std::function<bool()>& stop_requested) {

@@ -8,6 +8,9 @@
 namespace imbibe {
 
 struct RunHooks {
+  // Before every step, and once more at the end: may change the world and the end time (live changes and their replay).
+  // True: it did, so work space kept from earlier steps is thrown away.
+  std::function<bool(World&, Real& until)> before_step;
   std::function<void(const World&, const StepReport&)> at_output;   // at the start, every `every`, and at the end
   std::function<void(const World&, const StepReport&)> after_step;  // progress, checkpoints
   std::function<bool()> stop_requested;                             // true: finish this step and return

@@ -1,0 +1,198 @@
+#include "imbibe/scene/live_change.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "imbibe/core/error.h"
+#include "imbibe/scene/builder.h"
+#include "imbibe/sim/run.h"
+#include "imbibe/sim/state_hash.h"
+
+namespace imbibe {
+namespace {
+
+const char* const small_scene =
+    "version: 1\n"
+    "duration: 40 ms\n"
+    "liquid:\n"
+    "  particle_mass: 0.03 mg\n"
+    "  drops: [{centre: [0 mm, 0 mm, 1.2 mm], volume: 3 uL, velocity: [0, 0, -0.1 m/s]}]\n"
+    "  droppers: [{centre: [3 mm, 0 mm, 3 mm], volume: 0.4 uL, interval: 20 ms, count: 100, start: 1 ms}]\n"
+    "textiles:\n"
+    "  - name: swatch\n"
+    "    size: [9 mm, 9 mm]\n"
+    "    warp: {fibre: cotton, linear_density: 20 tex, density: 30 /cm}\n"
+    "    weft: {fibre: cotton, linear_density: 20 tex, density: 28 /cm}\n";
+
+const Library& library() {
+  static const Library read = read_library({IMBIBE_SOURCE_DIR});
+  return read;
+}
+
+struct Running {
+  Scene scene;
+  World world;
+};
+
+void run_to(World& world, Real until, const RunHooks& hooks = {}) {
+  RunPlan plan;
+  plan.until = until, plan.every = 1e-3;
+  run(world, plan, hooks);
+}
+
+// The small scene with `changes`, run to `until` or to the change that ends it.
+Running run_with(std::vector<LoggedChange> changes, Real until = 40e-3) {
+  Running r{read_scene_text(small_scene, "small"), {}};
+  r.world = build_world(r.scene, library());
+  ChangeReplay replay(std::move(changes));
+  RunHooks hooks;
+  hooks.before_step = [&](World& world, Real& end) { return replay.apply_due(r.scene, world, library(), end); };
+  hooks.stop_requested = [&] { return replay.ended(); };
+  run_to(r.world, until, hooks);
+  return r;
+}
+
+std::string refusal(const std::string& assignment) {
+  Running r = run_with({}, 2e-3);
+  const std::uint64_t before = state_hash(r.world);
+  try {
+    apply_change(r.scene, r.world, library(), {assignment});
+  } catch (const InputError& error) {
+    EXPECT_EQ(state_hash(r.world), before) << "a refused change must leave the world alone";
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LiveChange, ContactAngleTakesEffectAndKeepsTheMass) {
+  Running r = run_with({}, 10e-3);
+  const MassBalance before = mass_balance(r.world);
+  apply_change(r.scene, r.world, library(), {"textiles[0].contact_angle=80 deg"});
+  const MassBalance after = mass_balance(r.world);
+  EXPECT_NEAR(r.world.textiles[0].model->fibres[0].advancing_angle, radians(80), 1e-12);
+  EXPECT_EQ(after.free, before.free);
+  EXPECT_EQ(after.yarn, before.yarn);
+  EXPECT_EQ(after.sorbed, before.sorbed);
+  EXPECT_EQ(r.world.step, run_with({}, 10e-3).world.step);
+}
+
+TEST(LiveChange, ChangeToTheValueThatIsThereLeavesEveryBitOfTheLiquid) {
+  Running r = run_with({}, 10e-3);
+  World before = r.world;
+  apply_change(r.scene, r.world, library(), {"air.humidity=65 %"});
+  // Only the pace is made short again.
+  before.pace.resting = r.world.pace.resting, before.pace.calm_since = r.world.pace.calm_since;
+  before.pace.wetting_interval = r.world.pace.wetting_interval;
+  EXPECT_EQ(state_hash(r.world), state_hash(before));
+}
+
+TEST(LiveChange, AirGravityAndLiquidPropertiesChange) {
+  Running r = run_with({}, 5e-3);
+  apply_change(r.scene, r.world, library(),
+               {"air.humidity=20 %", "gravity=[0, 0, -1.6 m/s2]", "liquid.kind.surface_tension=30 mN/m"});
+  EXPECT_DOUBLE_EQ(r.world.air.humidity, 0.2);
+  EXPECT_DOUBLE_EQ(r.world.gravity.z, -1.6);
+  EXPECT_DOUBLE_EQ(r.world.liquid.kind.surface_tension, 0.03);
+  EXPECT_DOUBLE_EQ(r.world.textiles[0].model->liquid.surface_tension, 0.03);
+}
+
+TEST(LiveChange, AddedDropFalls) {
+  const auto drop = "liquid.drops[1]={centre: [-3 mm, 2 mm, 3 mm], volume: 0.5 uL, start: 5 ms}";
+  const Running with = run_with({{.step = 20, .assignments = {drop}}}), without = run_with({});
+  EXPECT_NEAR(with.world.ledger.supplied_kg - without.world.ledger.supplied_kg, 0.5e-9 * 998.2,
+              0.51 * with.world.liquid.particle_mass);  // half a particle is carried
+  EXPECT_LT(mass_balance(with.world).error(), 1e-10);
+}
+
+TEST(LiveChange, YarnsThatNoLongerWetExpelWhatTheyHeld) {
+  Running r = run_with({}, 30e-3);
+  const MassBalance before = mass_balance(r.world);
+  ASSERT_GT(before.yarn, 1e-7);
+  apply_change(r.scene, r.world, library(), {"textiles[0].contact_angle=120 deg"});
+  const MassBalance after = mass_balance(r.world);
+  EXPECT_EQ(after.yarn, 0);
+  EXPECT_LT(after.error(), 1e-12);  // rounding of sums of 1e3 terms
+  run_to(r.world, 40e-3);
+  EXPECT_LT(mass_balance(r.world).error(), 1e-10);
+}
+
+TEST(LiveChange, ShorterIntervalOfADropperMakesNoBurst) {
+  Running r = run_with({}, 25e-3);  // drops at 1 and 21 ms
+  const Real supplied = r.world.ledger.supplied_kg;
+  apply_change(r.scene, r.world, library(), {"liquid.droppers[0].interval=2 ms"});
+  EXPECT_NEAR(next_emission(r.world.sources.back()), 27e-3, 1e-9);
+  run_to(r.world, 26e-3);
+  EXPECT_EQ(r.world.ledger.supplied_kg, supplied);
+}
+
+TEST(LiveChange, ReplayOfTheLogEndsInTheSameBits) {
+  const std::vector<LoggedChange> changes{
+      {.step = 10, .assignments = {"textiles[0].contact_angle=30 deg"}},
+      {.step = 25, .assignments = {"air.humidity=10 %", "liquid.drops[1]={centre: [-3 mm, 2 mm, 1.2 mm], volume: 0.5 uL}"}},
+      {.step = 60, .assignments = {"duration=60 ms", "textiles[0].warp.fibre=wool"}},
+      {.step = 110, .assignments = {}, .end = true}};
+  const auto file = std::filesystem::temp_directory_path() / ("imbibe_changes_" + std::to_string(getpid()) + ".jsonl");
+  std::ofstream out(file);
+  for (const LoggedChange& change : changes) out << change_line(change);
+  out.close();
+  const World direct = run_with(changes).world, replayed = run_with(read_changes(file)).world;
+  EXPECT_EQ(direct.step, 110u);
+  EXPECT_EQ(state_hash(direct), state_hash(replayed));
+  EXPECT_NE(state_hash(direct), state_hash(run_with({changes[0], changes[1], changes[3]}).world));
+  std::filesystem::remove(file);
+}
+
+TEST(LiveChange, LongerDurationGoesOnWhereTheRunEnded) {
+  const World whole = run_with({}, 40e-3).world;
+  const World longer = run_with({{.step = whole.step, .assignments = {"duration=50 ms"}}}).world;
+  EXPECT_EQ(longer.time, 50e-3);
+}
+
+TEST(LiveChange, FibreWhoseYarnsDoNotFitTheWeaveIsRefused) {  // polypropylene is light: yarns of 20 tex are too thick
+  EXPECT_NE(refusal("textiles[0].warp.fibre=polypropylene").find("density"), std::string::npos);
+}
+
+TEST(LiveChange, GeometryWaitsForARestart) {
+  EXPECT_NE(refusal("textiles[0].size=[10 mm, 10 mm]").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("textiles[0].warp.density=20 /cm").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("liquid.particle_mass=0.1 mg").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("liquid.drops[0].volume=9 uL").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("textiles[0].wetting.network.sorption=shells").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("textiles[0].weave=/etc/passwd.wif").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("output.every=1 s").find("files"), std::string::npos);
+}
+
+TEST(LiveChange, AMapAroundSuchAKeyWaitsToo) {
+  EXPECT_NE(refusal("liquid={kind: oil}").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("textiles=[]").find("restart"), std::string::npos);
+  EXPECT_NE(refusal("textiles[0].warp={fibre: wool, density: 10 /cm, linear_density: 20 tex}").find("restart"),
+            std::string::npos);
+}
+
+TEST(LiveChange, WrongValuesAreRefusedWithTheirRange) {
+  EXPECT_NE(refusal("textiles[0].contact_angle=200 deg").find("180"), std::string::npos);
+  EXPECT_NE(refusal("air.humidty=30 %").find("humidity"), std::string::npos);
+  EXPECT_NE(refusal("textiles[0].warp.fibre=woll").find("wool"), std::string::npos);
+  EXPECT_NE(refusal("liquid.drops[7]={centre: [0, 0, 1 cm], volume: 1 uL}").find("[7]"), std::string::npos);
+  EXPECT_NE(refusal("rubbish"), "");
+}
+
+TEST(ReadChanges, SaysWhichLineIsWrong) {
+  const auto file = std::filesystem::temp_directory_path() / ("imbibe_changes_bad_" + std::to_string(getpid()) + ".jsonl");
+  std::ofstream(file) << "{\"step\": 5, \"set\": [\"air.humidity=30 %\"]}\nnonsense\n{\"step\": 4, \"set\": [\"a=1\"]}\n";
+  try {
+    read_changes(file);
+    FAIL();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.problems().size(), 2u) << error.what();
+    EXPECT_EQ(error.problems()[0].line, 2);
+    EXPECT_EQ(error.problems()[1].line, 3);
+  }
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace imbibe
