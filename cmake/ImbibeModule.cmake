@@ -30,7 +30,7 @@ endfunction()
 # tests/<folder>/*_test.cpp becomes imbibe_<folder>_tests. A module's tests link that module;
 # the other folders (physics, scenes, cli) link everything.
 function(imbibe_test_folders)
-  foreach(folder core geometry liquid fabric wetting cloth coupling sim scene io view verify physics scenes cli)
+  foreach(folder core geometry liquid fabric wetting cloth coupling sim scene io view verify live physics scenes cli)
     file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${folder}/*_test.cpp)
     if(NOT sources)
       continue()

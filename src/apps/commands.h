@@ -22,3 +22,4 @@ void add_fabric_command(CLI::App& app, CommandContext& context);
 void add_render_command(CLI::App& app, CommandContext& context);
 void add_report_command(CLI::App& app, CommandContext& context);
 void add_verify_command(CLI::App& app, CommandContext& context);
+void add_live_command(CLI::App& app, CommandContext& context);

@@ -49,6 +49,7 @@ int main(int count, char** words) {
   add_render_command(app, context);
   add_report_command(app, context);
   add_verify_command(app, context);
+  add_live_command(app, context);
   try {
     app.parse(count, words);
     return context.exit_code;

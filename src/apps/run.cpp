@@ -319,7 +319,6 @@ class RunSession {
 
   RunArguments arguments_;
   std::string program_;
-  std::vector<std::string> data_folders_;
   fs::path scene_file_, folder_path_;
   Scene scene_;
   Library library_;

@@ -48,7 +48,7 @@ bool is_numbered(const std::string& name, const std::string& start, const std::s
 bool is_name_of_a_run(std::string name) {
   if (name.ends_with(".part")) name.resize(name.size() - 5);
   static const std::vector<std::string> fixed{"scene.yaml", "run.json",   "log.txt",    "series.csv",
-                                              "film.mp4",   "report.html", "liquid.pvd"};
+                                              "film.mp4",   "report.html", "liquid.pvd", "changes.jsonl"};
   if (std::find(fixed.begin(), fixed.end(), name) != fixed.end()) return true;
   return (name.starts_with("textile_") && name.ends_with(".pvd")) || is_numbered(name, "textile_", ".vtp") ||
          is_numbered(name, "liquid_", ".vtp") || is_numbered(name, "checkpoint_", ".h5");
@@ -249,8 +249,8 @@ void RunFolder::write_frame(Collection& collection, const PolyData& data, const 
 
 bool RunFolder::write_output(const World& world, const StepReport& last_step) {
   if (skip_until_ && world.time <= *skip_until_) return false;
-  if (setup_.particle_files) write_frame(collections_[0], liquid_poly_data(world.liquid), world);
-  if (setup_.textile_files) {
+  if (with_files_ && setup_.particle_files) write_frame(collections_[0], liquid_poly_data(world.liquid), world);
+  if (with_files_ && setup_.textile_files) {
     for (std::size_t i = 0; i < world.textiles.size(); ++i) {
       const std::vector<Real> saturations = node_saturations(world.textiles[i], world.air);
       write_frame(collections_[1 + 2 * i], textile_poly_data(world.textiles[i], saturations), world);

@@ -57,6 +57,9 @@ class RunFolder {
 
   void write_checkpoint(const World& world);
 
+  // Whether the following outputs write .vtp files, of the kinds that the setup asks for, or only their rows.
+  void write_files(bool on) { with_files_ = on; }
+
   // A line of log.txt; a time stamp is put before it.
   void log(const std::string& line);
 
@@ -90,6 +93,7 @@ class RunFolder {
 
   std::filesystem::path folder_;
   RunSetup setup_;
+  bool with_files_ = true;
   SeriesFile series_;
   AppendFile log_;
   std::vector<std::string> notes_;

@@ -111,6 +111,12 @@ const std::vector<std::string>& series_columns() {
   return names;
 }
 
+std::vector<double> series_values(const SeriesRow& row) {
+  std::vector<double> values;
+  visit_columns(row, [&](const char*, const auto& value) { values.push_back(static_cast<double>(value)); });
+  return values;
+}
+
 std::string series_line(const SeriesRow& row) {
   std::string line;
   // fmt's "{}" is the shortest text that reads back to the same bits.

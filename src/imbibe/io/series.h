@@ -32,6 +32,8 @@ struct SeriesRow {
 SeriesRow series_row(const World& world, const StepReport& last_step, const MeasureParams& params = {});
 
 const std::vector<std::string>& series_columns();
+// The numbers of a row, one per column.
+std::vector<double> series_values(const SeriesRow& row);
 // The line of a row, numbers so that they read back to the same bits, without line end.
 std::string series_line(const SeriesRow& row);
 

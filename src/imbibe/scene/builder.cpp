@@ -274,6 +274,15 @@ SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind) {
   return e;
 }
 
+RunPlan run_plan(const Scene& scene) {
+  RunPlan plan;
+  plan.until = scene.duration;
+  plan.every = output_interval(scene);
+  plan.max_steps = scene.limits.max_steps ? static_cast<std::uint64_t>(*scene.limits.max_steps) : 0;
+  if (scene.limits.max_step) plan.step.max_step = *scene.limits.max_step;
+  return plan;
+}
+
 World build_world(const Scene& scene, const Library& library, const std::function<void(World&)>& continue_sources) {
   std::vector<Problem> problems;
   World world;

@@ -10,6 +10,7 @@
 
 #include "imbibe/scene/library.h"
 #include "imbibe/scene/scene.h"
+#include "imbibe/sim/run.h"
 #include "imbibe/sim/world.h"
 
 namespace imbibe {
@@ -38,6 +39,9 @@ double allowed_memory(const Scene& scene);
 
 // The drops, boxes and droppers of the scene as sources.
 std::vector<Source> sources_of(const Scene& scene);
+
+// How to step it: to the scene's end, with its output times and limits.
+RunPlan run_plan(const Scene& scene);
 
 // `continue_sources`, when given, brings the new world's sources to where those of a running one are, before placements
 // are checked: what has fallen already needs no room (scene/live_change.h).

@@ -48,7 +48,7 @@ constexpr std::array only_at_restart{
     "textiles[].name", "textiles[].centre", "textiles[].weft_direction", "textiles[].warp_direction", "textiles[].size",
     "textiles[].weave", "textiles[].weave_rows", "textiles[].stripes", "textiles[].thickness", "textiles[].areal_mass",
     "textiles[].porosity", "textiles[].porosity_by", "textiles[].warp_crimp_share", "textiles[].points_per_segment",
-    "textiles[].warp.density", "textiles[].weft.density", "textiles[].sheet.kind",
+    "textiles[].start", "textiles[].warp.density", "textiles[].weft.density", "textiles[].sheet.kind",
     // number of values per node
     "textiles[].wetting.kind", "textiles[].wetting.network.sorption", "textiles[].wetting.network.shells",
     "textiles[].wetting.network.hysteresis", "textiles[].wetting.network.pores",

@@ -40,6 +40,8 @@ Effect effect_of(const std::string& path);
 // past the end of a list appends: `liquid.drops[2]={centre: ..., volume: ...}`.
 void apply_change(Scene& scene, World& world, const Library& library, const std::vector<std::string>& assignments);
 
+inline constexpr const char* changes_file = "changes.jsonl";
+
 struct LoggedChange {
   std::uint64_t step = 0;
   Real time_s = 0;

@@ -59,14 +59,14 @@ class ParameterTable {
 
   template <class T>
   void value(const char* name, T& field, const ParameterInfo& info = {}) {
-    using Shape = table::Shape<T>;
+    using Form = table::Shape<T>;
     ParameterRow row;
     row.path = prefix_ + name;
-    row.element = table::TypeName<typename Shape::Element>::name;
-    row.length = Shape::length;
-    row.type = Shape::length == 1   ? row.element
-               : Shape::length == 0 ? "list of " + row.element + "s"
-                                    : std::to_string(Shape::length) + " " + row.element + "s";
+    row.element = table::TypeName<typename Form::Element>::name;
+    row.length = Form::length;
+    row.type = Form::length == 1   ? row.element
+               : Form::length == 0 ? "list of " + row.element + "s"
+                                    : std::to_string(Form::length) + " " + row.element + "s";
     row.unit = info.unit;
     row.shown = *info.shown ? info.shown : info.unit;
     row.min = info.min, row.max = info.max, row.above_min = info.above_min, row.required = info.required;

@@ -1,0 +1,225 @@
+#include "imbibe/live/capture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "imbibe/geometry/mesh_distance.h"
+#include "imbibe/live/controls.h"
+#include "imbibe/sim/measures.h"
+
+namespace imbibe::live {
+
+using Json = nlohmann::json;
+
+const std::vector<std::string>& step_bounds() {
+  static const std::vector<std::string> names{"",         "convective", "gravity", "capillary", "viscous",
+                                              "given",    "wetting",    "until",   "drop",      "cloth"};
+  return names;
+}
+
+int step_bound_index(const char* name) {
+  for (std::size_t i = 0; i < step_bounds().size(); ++i)
+    if (step_bounds()[i] == name) return static_cast<int>(i);
+  return 0;
+}
+
+const std::vector<std::string>& live_columns() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = series_columns();
+    all.insert(all.end(), {"wet_height_m", "speed", "step_bound", "converged"});
+    return all;
+  }();
+  return names;
+}
+
+std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more) {
+  std::vector<double> values = series_values(row);
+  values.insert(values.end(), {more.wet_height_m, more.speed, static_cast<double>(more.step_bound), more.converged ? 1.0 : 0.0});
+  return values;
+}
+
+Real wet_height(const World& world, const std::vector<std::vector<Real>>& saturations, Real wet_saturation) {
+  Real low = unlimited, high = -unlimited;
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    const Textile& textile = world.textiles[t];
+    const YarnNetwork& network = textile.fabric->network;
+    for (std::size_t node = 0; node < saturations[t].size(); ++node) {
+      if (!(saturations[t][node] > wet_saturation)) continue;
+      const Real z = textile.placement.to_world(network.node_centre(node)).z;
+      low = std::min(low, z), high = std::max(high, z);
+    }
+  }
+  return high > low ? high - low : 0;
+}
+
+Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>& saturations, const Snapshot* before) {
+  Snapshot s;
+  const auto& positions = world.liquid.particles.position;
+  const bool still = before && before->particles && before->particles->size() == positions.size() && world.pace.resting;
+  s.particles = still ? before->particles
+                      : std::make_shared<const QuantisedPoints>(
+                            quantise(positions.size(), [&](std::size_t i) { return positions[i]; }));
+  s.yarns.resize(world.textiles.size());
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    auto bytes = std::make_shared<Saturations>(saturations[t].size());
+    std::transform(saturations[t].begin(), saturations[t].end(), bytes->begin(), saturation_byte);
+    const bool same = before && t < before->saturations.size() && *before->saturations[t] == *bytes;
+    s.saturations.push_back(same ? before->saturations[t] : std::move(bytes));
+  }
+  return s;
+}
+
+namespace {
+
+Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json colour_json(const Vec3f& c) { return {c.x, c.y, c.z}; }
+
+Json solid_json(const SolidBody& solid) {
+  Json json{{"name", solid.name}, {"colour", colour_json(solid.colour)}, {"contact_angle", solid.material.contact_angle}};
+  if (const auto* plane = std::get_if<Plane>(&solid.shape))
+    json.update({{"form", "plane"}, {"point", vector_json(plane->point)}, {"normal", vector_json(plane->normal)}});
+  else if (const auto* box = std::get_if<Box>(&solid.shape))
+    json.update({{"form", "box"}, {"centre", vector_json(box->centre)}, {"size", vector_json(box->size)}});
+  else if (const auto* sphere = std::get_if<Sphere>(&solid.shape))
+    json.update({{"form", "sphere"}, {"centre", vector_json(sphere->centre)}, {"radius", sphere->radius}});
+  else if (const auto* cylinder = std::get_if<Cylinder>(&solid.shape))
+    json.update({{"form", "cylinder"}, {"base", vector_json(cylinder->base)}, {"axis", vector_json(cylinder->axis)},
+                 {"radius", cylinder->radius}, {"height", cylinder->height}});
+  else if (const auto* cone = std::get_if<Cone>(&solid.shape))
+    json.update({{"form", "cone"}, {"base", vector_json(cone->base)}, {"axis", vector_json(cone->axis)},
+                 {"radius", cone->radius}, {"height", cone->height}});
+  else
+    json["form"] = "mesh";
+  return json;
+}
+
+int shown_stride(const YarnNetwork& network) { return std::max(1, network.points_per_segment / shown_steps_per_segment); }
+
+Json textile_json(const Textile& textile) {
+  const YarnNetwork& network = textile.fabric->network;
+  const auto stride = static_cast<Index>(shown_stride(network));
+  Json radius = Json::array(), colour = Json::array(), family = Json::array(), segments = Json::array(), points = Json::array();
+  for (std::size_t y = 0; y < network.yarn_family.size(); ++y) {
+    const YarnType& type = network.yarn_types[network.yarn_type[y]];
+    radius.push_back(static_cast<float>(type.radius));
+    colour.push_back(colour_json(type.colour));
+    family.push_back(network.yarn_family[y] == Family::warp ? 0 : 1);
+    segments.push_back(network.yarn_first_segment[y + 1] - network.yarn_first_segment[y]);
+    points.push_back((network.yarn_first_point[y + 1] - 1 - network.yarn_first_point[y]) / stride + 1);
+  }
+  return {{"name", textile.name},
+          {"size", {network.size_x, network.size_y}},
+          {"thickness", network.thickness},
+          {"pitch", {network.pitch_x, network.pitch_y}},
+          {"origin", vector_json(textile.placement.origin)},
+          {"u", vector_json(textile.placement.u)},
+          {"v", vector_json(textile.placement.v)},
+          {"n", vector_json(textile.placement.n)},
+          {"steps_per_segment", network.points_per_segment / static_cast<int>(stride)},
+          {"segments", network.segments()},
+          {"pores", network.pores()},
+          {"yarn_radius", radius},
+          {"yarn_colour", colour},
+          {"yarn_family", family},
+          {"yarn_segments", segments},
+          {"yarn_points", points}};
+}
+
+QuantisedPoints shown_points(const Textile& textile) {
+  const YarnNetwork& network = textile.fabric->network;
+  const auto stride = static_cast<Index>(shown_stride(network));
+  std::vector<Vec3f> points;
+  for (std::size_t y = 0; y + 1 < network.yarn_first_point.size(); ++y)
+    for (Index i = network.yarn_first_point[y]; i < network.yarn_first_point[y + 1]; i += stride)
+      points.emplace_back(textile.placement.to_world(network.points[i]));
+  return quantise(points.size(), [&](std::size_t i) { return points[i]; });
+}
+
+void add_mesh(const SolidBody& solid, Geometry& geometry) {
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> triangles;
+  if (const auto* mesh = std::get_if<MeshShape>(&solid.shape)) {
+    for (const auto& p : (*mesh)->mesh().vertices)
+      vertices.insert(vertices.end(), {float(p.x), float(p.y), float(p.z)});
+    for (const auto& t : (*mesh)->mesh().triangles) triangles.insert(triangles.end(), {t[0], t[1], t[2]});
+  }
+  geometry.mesh_vertices.push_back(std::move(vertices));
+  geometry.mesh_triangles.push_back(std::move(triangles));
+}
+
+}  // namespace
+
+Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World& world, const Library& library,
+                       const SceneTexts& texts) {
+  Geometry g;
+  g.generation = generation;
+  Json textiles = Json::array(), solids = Json::array();
+  for (const Textile& textile : world.textiles) {
+    textiles.push_back(textile_json(textile));
+    g.yarns.push_back(shown_points(textile));
+    const YarnNetwork& network = textile.fabric->network;
+    g.pores.push_back(quantise(network.pores(), [&](std::size_t i) {
+      return textile.placement.to_world(network.pore_centre[i]);
+    }));
+  }
+  for (const SolidBody& solid : world.solids) solids.push_back(solid_json(solid)), add_mesh(solid, g);
+  const Json json{{"type", "scene"},
+                  {"swatch", texts.swatch},
+                  {"generation", generation},
+                  {"title", scene.title},
+                  {"replay", texts.replay},
+                  {"folder", texts.folder},
+                  {"duration", scene.duration},
+                  {"gravity", vector_json(world.gravity)},
+                  {"liquid", {{"name", world.liquid.kind.name},
+                              {"spacing", world.liquid.particle_mass > 0 ? world.liquid.spacing() : 0},
+                              {"particle_mass", world.liquid.particle_mass},
+                              {"density", world.liquid.kind.density}}},
+                  {"textiles", textiles},
+                  {"solids", solids},
+                  {"controls", Json::parse(texts.replay ? "[]" : controls_json(scene, world, library))},
+                  {"history", Json::parse(texts.history_json)}};
+  g.scene_json = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return g;
+}
+
+std::string inspect(const World& world, std::size_t textile_index, std::size_t node) {
+  if (textile_index >= world.textiles.size()) return "";
+  const Textile& textile = world.textiles[textile_index];
+  const WettingModel& model = *textile.model;
+  const YarnNetwork& network = textile.fabric->network;
+  if (node >= model.nodes()) return "";
+  const Vec3 place = textile.placement.to_world(network.node_centre(node));
+  Json json{{"type", "inspect"},
+            {"textile", textile_index},
+            {"node", node},
+            {"name", textile.name},
+            {"place", vector_json(place)},
+            {"saturation", saturation(model, textile.contents, node)},
+            {"liquid_kg", textile.contents.liquid_kg[node]},
+            {"capacity_kg", current_volume(model, textile.contents, node) * model.liquid.density},
+            {"pressure", node_pressure(model, textile.contents, node)}};
+  if (network.is_pore(node)) {
+    const std::size_t pore = node - network.segments();
+    json.update({{"kind", "pore"},
+                 {"throat", network.pore_throat[pore]},
+                 {"opening", {network.pore_opening_x[pore], network.pore_opening_y[pore]}}});
+  } else {
+    const YarnType& type = network.type_of_segment(node);
+    const Index yarn = network.segment_yarn[node];
+    json.update({{"kind", network.family_of_segment(node) == Family::warp ? "warp" : "weft"},
+                 {"yarn", yarn},
+                 {"segment", node - network.yarn_first_segment[yarn]},
+                 {"fibre", type.fibre.name},
+                 {"radius", type.radius},
+                 {"contact_angle", type.fibre.advancing_angle},
+                 {"regain", node_regain(model, textile.contents, node)},
+                 {"sorbed_kg", textile.contents.sorbed_kg[node]}});
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace imbibe::live

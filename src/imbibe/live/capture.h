@@ -1,0 +1,52 @@
+// Takes what the page shows from a World: snapshots for frames, geometry and texts for the scene message, the contents
+// of one node for picking. Tested in tests/live/capture_test.cpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "imbibe/io/series.h"
+#include "imbibe/live/snapshot.h"
+#include "imbibe/scene/library.h"
+#include "imbibe/scene/scene.h"
+#include "imbibe/sim/step.h"
+#include "imbibe/sim/world.h"
+
+namespace imbibe::live {
+
+// The columns of a frame's values: those of series.csv, then these.
+struct LiveColumns {
+  Real wet_height_m = 0;   // vertical extent of the wet nodes
+  Real speed = 0;          // simulated per wall-clock second
+  int step_bound = 0;      // index into step_bounds()
+  bool converged = true;
+};
+const std::vector<std::string>& live_columns();      // all names
+const std::vector<std::string>& step_bounds();       // names of what held a step
+int step_bound_index(const char* name);
+
+std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more);
+
+// Vertical extent of all wet nodes, m.
+Real wet_height(const World& world, const std::vector<std::vector<Real>>& saturations, Real wet_saturation);
+
+// `before`: the snapshot made last; what has not changed is shared with it. Positions of resting liquid are not looked
+// at again.
+Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>& saturations, const Snapshot* before);
+
+// Centre lines are thinned to this many steps per half loop; the page draws round curves through them.
+inline constexpr int shown_steps_per_segment = 4;
+
+struct SceneTexts {
+  int swatch = 0;
+  bool replay = false;
+  std::string folder;          // where the run is written, for the page to name
+  std::string history_json;    // rows so far, "[]" when none
+};
+Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World& world, const Library& library,
+                       const SceneTexts& texts);
+
+// What a node holds, as JSON text for the page; "" when there is no such node.
+std::string inspect(const World& world, std::size_t textile, std::size_t node);
+
+}  // namespace imbibe::live

@@ -1,0 +1,50 @@
+#include "imbibe/live/recorder.h"
+
+#include <fmt/format.h>
+
+#include "imbibe/core/parallel.h"
+
+namespace imbibe::live {
+
+namespace fs = std::filesystem;
+
+fs::path free_folder(const fs::path& wanted) {
+  for (int i = 1;; ++i) {
+    fs::path folder = wanted;
+    if (i > 1) folder += fmt::format("_{}", i);
+    if (!fs::exists(folder)) return folder;
+  }
+}
+
+Recorder::Recorder(const RecorderOptions& options, const Scene& scene, const World& world) {
+  RunSetup setup;
+  setup.command = options.command;
+  setup.title = scene.title;
+  setup.scene_yaml = write_scene(scene);
+  setup.seed = world.seed;
+  setup.threads = available_threads();
+  setup.until_s = scene.duration;
+  setup.every_s = output_interval(scene);
+  setup.measures = scene.measures;
+  setup.particle_files = scene.output.particles;
+  setup.textile_files = scene.output.textiles;
+  const fs::path folder = options.exactly ? options.folder : free_folder(options.folder);
+  run_ = std::make_unique<RunFolder>(folder, std::move(setup),
+                                     options.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse, world);
+  record(options.files);
+  log_ = AppendFile(folder / changes_file);
+}
+
+void Recorder::change(const World& world, const std::vector<std::string>& assignments) {
+  log_.append(change_line({world.step, world.time, assignments, false}));
+  ++changes_;
+}
+
+void Recorder::finish(const World& world, RunStatus status, const std::string& reason) {
+  if (finished_) return;
+  finished_ = true;
+  log_.append(change_line({world.step, world.time, {}, true}));
+  run_->finish(world, status, reason);
+}
+
+}  // namespace imbibe::live

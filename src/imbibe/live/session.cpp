@@ -1,0 +1,239 @@
+#include "imbibe/live/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "imbibe/scene/builder.h"
+#include "imbibe/sim/measures.h"
+
+namespace imbibe::live {
+
+using Json = nlohmann::json;
+
+namespace {
+constexpr Real longest_lead = 0.05;       // s of wall time at the speed limit that one swatch may be ahead of the other
+constexpr Real forgiven_lag = 0.25;       // s: a simulation slower than the limit does not save up to run faster later
+constexpr std::size_t most_commands = 4096;  // waiting; what comes on top is dropped and told
+
+std::vector<std::vector<Real>> saturations_of(const World& world) {
+  std::vector<std::vector<Real>> all;
+  for (const Textile& textile : world.textiles) all.push_back(node_saturations(textile, world.air));
+  return all;
+}
+}  // namespace
+
+Session::Session(SessionSetup setup, std::function<void()> wake) : Feed(std::move(wake)), setup_(std::move(setup)) {
+  scene_ = setup_.scene;
+  pin_output_interval(scene_);
+  world_ = build_world(scene_, *setup_.library);
+  running_ = !setup_.wait_for_viewer;
+  begin();
+  thread_ = std::thread([this] { thread(); });
+}
+
+Session::~Session() {
+  {
+    const std::scoped_lock hold(lock_);
+    quit_asked_ = true;
+  }
+  woken_.notify_one();
+  thread_.join();
+}
+
+void Session::keep_pace_with(std::shared_ptr<const std::atomic<Real>> other) {
+  const std::scoped_lock hold(lock_);
+  other_time_ = std::move(other);
+}
+
+void Session::post(Command command) {
+  {
+    const std::scoped_lock hold(lock_);
+    if (commands_.size() >= most_commands) return outlet.tell(command.viewer, error_event(setup_.swatch, "busy", "too many commands are waiting"));
+    // A slider that is dragged: only its last value counts.
+    if (auto* now = std::get_if<SetMessage>(&command.message.body); now && !commands_.empty()) {
+      auto* last = std::get_if<SetMessage>(&commands_.back().message.body);
+      const auto path = [](const SetMessage& m) { return m.assignments[0].substr(0, m.assignments[0].find('=')); };
+      if (last && !last->restart && !now->restart && last->assignments.size() == 1 && now->assignments.size() == 1 &&
+          commands_.back().viewer == command.viewer && path(*last) == path(*now))
+        commands_.pop_back();
+    }
+    commands_.push_back(std::move(command));
+  }
+  woken_.notify_one();
+}
+
+std::string Session::scene_text() const {
+  const std::scoped_lock hold(lock_);
+  return scene_text_;
+}
+
+void Session::begin() {
+  ++generation_;
+  start_scene_ = scene_;
+  ended_ = failed_ = false;
+  steps_left_ = 0;
+  report_ = {};
+  last_ = nullptr;
+  history_.clear();
+  emit_due(world_);  // as run() does: drops that hang there at the start are seen before the first step
+  recorder_.emplace(setup_.record, scene_, world_);
+  rebase();
+  time_reached_->store(world_.time);
+  speed_time_ = world_.time, speed_wall_ = Clock::now(), speed_ = 0;
+  {
+    const std::scoped_lock hold(lock_);
+    scene_text_ = write_scene(scene_);
+  }
+  outlet.publish(std::make_shared<const Geometry>(take_geometry(
+      generation_, scene_, world_, *setup_.library, {setup_.swatch, false, recorder_->folder().string(), "[]"})));
+  publish();
+}
+
+void Session::thread() {
+  while (!quit_) {
+    const RunPlan plan = run_plan(scene_);
+    RunHooks hooks;
+    hooks.before_step = [this](World& world, Real& until) { return between_steps(world, until); };
+    hooks.after_step = [this](const World&, const StepReport& report) { after_step(report); };
+    hooks.at_output = [this](const World& world, const StepReport& report) { recorder_->write_output(world, report); };
+    hooks.stop_requested = [this] { return stop_; };
+    std::string reason = "ended by the user";
+    RunStatus status = RunStatus::done;
+    try {
+      run(world_, plan, hooks);
+    } catch (const std::exception& error) {  // numerics, the disk, or our bug: the page says so and may start anew
+      reason = error.what(), status = RunStatus::failed;
+      failed_ = true, running_ = false;
+      outlet.tell(all_viewers, error_event(setup_.swatch, "simulation", reason));
+      publish();
+      Real until = world_.time;
+      while (!stop_) between_steps(world_, until);
+    }
+    end_recording(status, reason);
+    stop_ = false;
+    if (!next_) continue;
+    scene_ = std::move(next_->first), world_ = std::move(next_->second);
+    next_.reset();
+    begin();
+  }
+}
+
+void Session::end_recording(RunStatus status, const std::string& reason) {
+  try {
+    recorder_->finish(world_, status, reason);
+  } catch (const std::exception& error) {
+    outlet.tell(all_viewers, error_event(setup_.swatch, "run folder", error.what()));
+  }
+  setup_.record.overwrite = recorder_->untouched();
+  if (setup_.record.overwrite) setup_.record.folder = recorder_->folder(), setup_.record.exactly = true;
+  else setup_.record.exactly = false;
+}
+
+std::uint16_t Session::flags() const {
+  return static_cast<std::uint16_t>((running_ ? flag_running : 0) | (ended_ ? flag_ended : 0) |
+                                    (world_.pace.resting ? flag_resting : 0) |
+                                    (recorder_ && recorder_->recording() ? flag_recording : 0) |
+                                    (failed_ ? flag_failed : 0));
+}
+
+void Session::publish() {
+  const auto saturations = saturations_of(world_);
+  auto snapshot = std::make_shared<Snapshot>(take_snapshot(world_, saturations, last_.get()));
+  snapshot->generation = generation_, snapshot->number = ++number_, snapshot->flags = flags();
+  LiveColumns more;
+  more.wet_height_m = wet_height(world_, saturations, scene_.measures.wet_saturation);
+  more.speed = running_ ? speed_ : 0;
+  more.step_bound = step_bound_index(report_.step_bound);
+  more.converged = report_.converged;
+  snapshot->values = live_values(series_row(world_, report_, scene_.measures), more);
+  history_.add(snapshot->values);
+  last_ = std::move(snapshot);
+  outlet.publish(last_);
+  last_publish_ = Clock::now();
+  told_ = true;
+}
+
+void Session::sample() {
+  const Real wall = std::chrono::duration<Real>(Clock::now() - speed_wall_).count();
+  if (wall < 0.5) return;
+  speed_ = (world_.time - speed_time_) / wall;
+  speed_wall_ = Clock::now(), speed_time_ = world_.time;
+}
+
+void Session::check_limits() {
+  if (static_cast<Real>(world_.liquid.particles.size()) > scene_.limits.max_particles && running_) {
+    running_ = false;
+    outlet.tell(all_viewers, notice_event(setup_.swatch, fmt::format("paused: {} particles, more than limits.max_particles",
+                                                                     world_.liquid.particles.size())));
+  }
+  if (recorder_->recording() && recorder_->bytes() > scene_.limits.max_disk) {
+    recorder_->record(false);
+    outlet.tell(all_viewers, notice_event(setup_.swatch, "recording stopped: the run folder holds more than limits.max_disk"));
+  }
+}
+
+void Session::after_step(const StepReport& report) {
+  report_ = report;
+  told_ = false;
+  time_reached_->store(world_.time, std::memory_order_relaxed);
+  if (steps_left_ > 0) --steps_left_;
+  sample();
+  check_limits();
+  const Real since = std::chrono::duration<Real>(Clock::now() - last_publish_).count();
+  if (outlet.viewers.load(std::memory_order_relaxed) > 0 && since >= setup_.snapshot_every) publish();
+}
+
+// Whether the clock may go on now; if not, how long to wait for it (a command wakes earlier).
+bool Session::may_step(Real& wait_s) {
+  wait_s = 1;
+  if (steps_left_ > 0) return true;
+  if (!running_) return false;
+  const Real limit = setup_.speed_limit;
+  if (limit > 0) {
+    const Real wall = std::chrono::duration<Real>(Clock::now() - pace_wall_).count();
+    const Real ahead = (world_.time - pace_time_) / limit - wall;  // s of wall time
+    if (ahead < -forgiven_lag) rebase();
+    if (ahead > 0) return wait_s = ahead, false;
+  }
+  std::shared_ptr<const std::atomic<Real>> other;
+  {
+    const std::scoped_lock hold(lock_);
+    other = other_time_;
+  }
+  if (other && world_.time > other->load(std::memory_order_relaxed) + longest_lead * std::max(limit, 0.1))
+    return wait_s = 0.005, false;
+  return true;
+}
+
+bool Session::between_steps(World& world, Real& until) {
+  bool changed = false;
+  for (;;) {
+    std::deque<Command> todo;
+    {
+      const std::scoped_lock hold(lock_);
+      todo.swap(commands_);
+      if (quit_asked_) quit_ = stop_ = true;
+    }
+    for (const Command& command : todo) {
+      if (stop_) break;
+      changed = handle(command) || changed;
+    }
+    if (stop_) return changed;
+    until = failed_ ? until : scene_.duration;
+    if (world.time < until) ended_ = false;
+    const bool at_end = world.time >= until;
+    if (at_end && !failed_ && !ended_) ended_ = true, running_ = false, steps_left_ = 0, told_ = false;
+    time_reached_->store(running_ || steps_left_ > 0 ? world.time : 1e30, std::memory_order_relaxed);
+    Real wait_s = 1;
+    if (!at_end && may_step(wait_s)) return changed;
+    const bool waits_long = wait_s > setup_.snapshot_every;
+    if (!told_ && (waits_long || !running_)) publish();
+    std::unique_lock hold(lock_);
+    woken_.wait_for(hold, std::chrono::duration<Real>(std::min<Real>(wait_s, 1)),
+                    [this] { return !commands_.empty() || quit_asked_; });
+  }
+}
+
+}  // namespace imbibe::live

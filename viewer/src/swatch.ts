@@ -1,0 +1,132 @@
+// One swatch on the page: its scene message, its yarns, liquid and solids in a three.js scene, and its rows.
+import * as THREE from 'three';
+import { applyChanges, type Frame, type HelloMessage, type SceneMessage } from './protocol';
+import { Liquid } from './liquid';
+import { Series } from './series';
+import { solidMesh } from './solids';
+import { MM, Yarns, type YarnLook } from './yarns';
+
+export class Swatch {
+  readonly scene = new THREE.Scene();
+  yarns: Yarns[] = [];
+  liquid: Liquid | null = null;
+  pores: Float32Array[] = [];          // mm, three per pore
+  readonly series: Series;
+  message: SceneMessage | null = null;
+  generation = 0;
+  flags = 0;
+  values: Float64Array = new Float64Array();
+  frames = 0;
+  frameBytes = 0;
+  readonly bounds = new THREE.Box3();
+  private readonly things = new THREE.Group();
+  private readonly sun = new THREE.DirectionalLight(0xfff4e5, 2.6);
+
+  constructor(hello: HelloMessage, private readonly look: YarnLook) {
+    this.series = new Series(hello.columns);
+    this.scene.add(this.things, new THREE.HemisphereLight(0xf2f6ff, 0x8d8478, 1.25), this.sun, this.sun.target);
+    const fill = new THREE.DirectionalLight(0xdbe8ff, 0.5);
+    fill.position.set(-1, 0.6, 0.5);
+    this.scene.add(fill);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.radius = 5;
+    this.sun.shadow.normalBias = 0.05;
+  }
+
+  get textiles() { return this.message?.textiles ?? []; }
+
+  begin(message: SceneMessage): void {
+    this.message = message;
+    this.generation = message.generation;
+    this.series.load(message.history);
+    this.values = new Float64Array(this.series.columns.length);
+  }
+
+  take(frame: Frame, sides: number): void {
+    if (frame.geometry) return this.build(frame, sides);
+    if (frame.generation !== this.generation) return;
+    this.flags = frame.flags;
+    this.values = frame.values;
+    this.series.add(frame.values);
+    ++this.frames;
+    this.frameBytes += frame.bytes;
+    for (const section of frame.sections) {
+      if (section.kind === 'particles') { this.liquid?.set(section.points); continue; }
+      const yarns = 'owner' in section ? this.yarns[section.owner] : undefined;
+      if (!yarns) continue;
+      if (section.kind === 'saturations') yarns.saturation.set(section.values), yarns.saturationChanged();
+      else if (section.kind === 'changes') applyChanges(yarns.saturation, section.bytes, section.count), yarns.saturationChanged();
+      else if (section.kind === 'yarns') yarns.setPoints(section.points);
+    }
+  }
+
+  private build(frame: Frame, sides: number): void {
+    const message = this.message;
+    if (!message || frame.generation !== message.generation) return;
+    this.clear();
+    const meshes = new Map<number, { vertices: Float32Array; triangles: Uint32Array }>();
+    for (const section of frame.sections) {
+      if (section.kind === 'yarns') {
+        const yarns = new Yarns(message.textiles[section.owner]!, section.points, this.look, sides);
+        this.yarns[section.owner] = yarns;
+        this.things.add(yarns.group);
+      } else if (section.kind === 'pores') {
+        const { origin, step, xyz } = section.points;
+        this.pores[section.owner] = Float32Array.from(xyz, (x, i) => MM * (origin[i % 3]! + step[i % 3]! * x));
+      } else if (section.kind === 'vertices') {
+        meshes.set(section.owner, { vertices: section.values, triangles: new Uint32Array() });
+      } else if (section.kind === 'triangles') {
+        const mesh = meshes.get(section.owner);
+        if (mesh) mesh.triangles = section.values;
+      }
+    }
+    this.bounds.makeEmpty();
+    for (const yarns of this.yarns)
+      for (let i = 0; i < yarns.firstPoint[yarns.firstPoint.length - 1]!; ++i)
+        this.bounds.expandByPoint(new THREE.Vector3(yarns.points[4 * i]!, yarns.points[4 * i + 1]!, yarns.points[4 * i + 2]!));
+    const extent = this.bounds.isEmpty() ? 20 : this.bounds.getSize(new THREE.Vector3()).length();
+    message.solids.forEach((solid, i) => {
+      const mesh = solidMesh(solid, extent, meshes.get(i));
+      this.things.add(mesh);
+      if (solid.form !== 'plane') this.bounds.expandByObject(mesh);
+    });
+    if (this.bounds.isEmpty()) this.bounds.set(new THREE.Vector3(-10, -10, 0), new THREE.Vector3(10, 10, 10));
+    this.liquid = new Liquid(message.liquid.spacing || 1e-4);
+    this.things.add(this.liquid.balls);
+    this.light();
+  }
+
+  private light(): void {
+    const centre = this.bounds.getCenter(new THREE.Vector3()), size = this.bounds.getSize(new THREE.Vector3()).length();
+    this.sun.position.copy(centre).add(new THREE.Vector3(0.55, -0.65, 1.1).multiplyScalar(size));
+    this.sun.target.position.copy(centre);
+    const camera = this.sun.shadow.camera, half = 0.62 * size;
+    camera.left = camera.bottom = -half;
+    camera.right = camera.top = half;
+    camera.near = 0.1 * size;
+    camera.far = 3 * size;
+    camera.updateProjectionMatrix();
+  }
+
+  value(name: string): number { return this.values[this.series.index(name)] ?? 0; }
+
+  // Particles as balls, or hidden because LiquidSurface draws them.
+  showBalls(on: boolean): void {
+    if (!this.liquid) return;
+    this.liquid.balls.visible = on;
+    this.liquid.forSurface(!on, this.message?.liquid.spacing ?? 1e-4);
+  }
+
+  private clear(): void {
+    for (const yarns of this.yarns) yarns.dispose();
+    this.liquid?.dispose();
+    this.things.traverse((thing) => { if (thing instanceof THREE.Mesh && thing.geometry) thing.geometry.dispose(); });
+    this.things.clear();
+    this.yarns = [];
+    this.pores = [];
+    this.liquid = null;
+  }
+
+  dispose(): void { this.clear(); }
+}

@@ -1,0 +1,264 @@
+// The 3-D view: one renderer, one camera, a part of the canvas per swatch. Draws only when something has changed, so
+// that a still page costs nothing and a weak machine's processor is left to the simulation.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { LiquidSurface } from './liquid_surface';
+import { roundLength } from './text';
+import type { Swatch } from './swatch';
+
+export type Quality = 'fine' | 'plain';
+
+export interface Hit { swatch: number; textile: number; node: number; place: THREE.Vector3 }
+
+export class View {
+  readonly camera = new THREE.PerspectiveCamera(32, 1, 0.1, 1e5);
+  readonly orbit: OrbitControls;
+  quality: Quality = 'fine';
+  draws = 0;
+  drawMs = 0;
+  private readonly renderer: THREE.WebGLRenderer;
+  private surface: LiquidSurface | null = null;
+  private dirty = true;
+  private cut: number | null = null;
+  private readonly plane = new THREE.Plane(new THREE.Vector3(0, 1, 0), 0);
+  private dark = false;
+  private keepPicture: ((canvas: HTMLCanvasElement) => void) | null = null;
+  readonly software: boolean;
+
+  constructor(readonly canvas: HTMLCanvasElement, private readonly swatches: () => Swatch[], private readonly drawn: () => void) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    const gl = this.renderer.getContext(), info = gl.getExtension('WEBGL_debug_renderer_info');
+    const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
+    this.software = /swiftshader|llvmpipe|software/i.test(name);
+    this.renderer.autoClear = false;
+    this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.enableDamping = false;
+    this.orbit.zoomToCursor = true;
+    this.orbit.addEventListener('change', () => this.touch());
+    new ResizeObserver(() => this.touch()).observe(canvas);
+    const loop = () => { if (this.dirty) this.draw(); requestAnimationFrame(loop); };
+    requestAnimationFrame(loop);
+  }
+
+  touch(): void { this.dirty = true; }
+
+  setQuality(quality: Quality): void {
+    this.quality = quality;
+    if (quality === 'plain') { this.surface?.dispose(); this.surface = null; }
+    else this.surface ??= new LiquidSurface();
+    this.renderer.shadowMap.enabled = quality === 'fine';
+    this.renderer.shadowMap.needsUpdate = true;
+    this.renderer.setPixelRatio(quality === 'fine' ? Math.min(devicePixelRatio, 2) : 1);
+    for (const swatch of this.swatches())
+      swatch.scene.traverse((thing) => { if (thing instanceof THREE.Mesh) (thing.material as THREE.Material).needsUpdate = true; });
+    this.touch();
+  }
+
+  setDark(dark: boolean): void { this.dark = dark; this.touch(); }
+
+  // -1 .. 1 across the cloth; null: whole.
+  setSection(place: number | null): void { this.cut = place; this.touch(); }
+
+  private bounds(): THREE.Box3 {
+    const all = new THREE.Box3();
+    for (const swatch of this.swatches()) if (!swatch.bounds.isEmpty()) all.union(swatch.bounds);
+    if (all.isEmpty()) all.set(new THREE.Vector3(-10, -10, -1), new THREE.Vector3(10, 10, 1));
+    return all;
+  }
+
+  fit(direction: 'free' | 'top' | 'side' | 'keep' = 'free'): void {
+    const bounds = this.bounds(), centre = bounds.getCenter(new THREE.Vector3()), size = bounds.getSize(new THREE.Vector3());
+    const from = direction === 'top' ? new THREE.Vector3(0, -0.001, 1) : direction === 'side' ? new THREE.Vector3(0, -1, 0.06)
+      : direction === 'keep' ? this.camera.position.clone().sub(this.orbit.target).normalize() : new THREE.Vector3(0.32, -0.92, 0.78);
+    from.normalize();
+    const area = this.area(0);
+    const half = Math.tan((this.camera.fov * Math.PI) / 360), aspect = area.z / area.w;
+    // The box as seen from there, in both directions of the picture.
+    const right = new THREE.Vector3().crossVectors(this.camera.up, from).normalize(), up = new THREE.Vector3().crossVectors(from, right);
+    const extent = (v: THREE.Vector3) => 0.5 * (Math.abs(v.x) * size.x + Math.abs(v.y) * size.y + Math.abs(v.z) * size.z);
+    const distance = Math.max(extent(right) / (half * aspect), extent(up) / half) * 1.12 + extent(from);
+    this.orbit.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(from, distance);
+    this.camera.near = distance / 200;
+    this.camera.far = distance * 30;
+    this.orbit.minDistance = 0.01 * distance;
+    this.orbit.maxDistance = 8 * distance;
+    this.orbit.update();
+    this.touch();
+  }
+
+  turn(azimuth: number, elevation: number): void {
+    const offset = this.camera.position.clone().sub(this.orbit.target), s = new THREE.Spherical();
+    const q = new THREE.Quaternion().setFromUnitVectors(this.camera.up, new THREE.Vector3(0, 1, 0));
+    s.setFromVector3(offset.applyQuaternion(q));
+    s.theta += azimuth;
+    s.phi = Math.min(Math.PI - 0.01, Math.max(0.01, s.phi + elevation));
+    this.camera.position.copy(this.orbit.target).add(new THREE.Vector3().setFromSpherical(s).applyQuaternion(q.invert()));
+    this.orbit.update();
+    this.touch();
+  }
+
+  zoom(factor: number): void {
+    this.camera.position.sub(this.orbit.target).multiplyScalar(factor).add(this.orbit.target);
+    this.orbit.update();
+    this.touch();
+  }
+
+  // The part of the canvas of a swatch: x, y from below, width, height in CSS pixels.
+  area(index: number): THREE.Vector4 {
+    const n = Math.max(1, this.swatches().length), width = this.canvas.clientWidth / n;
+    return new THREE.Vector4(Math.round(index * width), 0, Math.round(width), this.canvas.clientHeight);
+  }
+
+  private draw(): void {
+    this.dirty = false;
+    const start = performance.now();
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (width === 0 || height === 0) return;
+    const size = this.renderer.getSize(new THREE.Vector2());
+    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
+    const ground = getComputedStyle(document.documentElement).getPropertyValue('--ground').trim() || '#ffffff';
+    this.renderer.setRenderTarget(null);
+    this.renderer.setScissorTest(false);
+    this.renderer.setClearColor(new THREE.Color(ground), 1);
+    this.renderer.clear();
+    this.section();
+    this.swatches().forEach((swatch, index) => this.drawSwatch(swatch, index, new THREE.Color(ground)));
+    this.keepPicture?.(this.canvas);
+    this.keepPicture = null;
+    ++this.draws;
+    this.drawMs = performance.now() - start;
+    this.drawn();
+  }
+
+  private drawSwatch(swatch: Swatch, index: number, ground: THREE.Color): void {
+    const area = this.area(index);
+    this.camera.aspect = area.z / area.w;
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+    swatch.scene.background = ground;
+    const liquid = swatch.liquid;
+    if (liquid) {
+      liquid.uniforms.uPixels.value = area.w * this.renderer.getPixelRatio();
+      liquid.uniforms.uProjection.value.copy(this.camera.projectionMatrix);
+      const cut = this.plane.clone().applyMatrix4(this.camera.matrixWorldInverse);
+      if (this.cut === null) liquid.uniforms.uCut.value.set(0, 0, 0, 1);
+      else liquid.uniforms.uCut.value.set(cut.normal.x, cut.normal.y, cut.normal.z, cut.constant);
+    }
+    const smooth = this.surface !== null && liquid !== null && liquid.count > 0;
+    swatch.showBalls(!smooth);
+    if (smooth) return this.surface!.render(this.renderer, swatch.scene, this.camera, liquid, area, this.dark);
+    this.renderer.setViewport(area);
+    this.renderer.setScissor(area);
+    this.renderer.setScissorTest(true);
+    this.renderer.render(swatch.scene, this.camera);
+  }
+
+  private section(): void {
+    if (this.cut === null) { this.renderer.clippingPlanes = []; return; }
+    const bounds = this.bounds(), centre = bounds.getCenter(new THREE.Vector3()), size = bounds.getSize(new THREE.Vector3());
+    this.plane.normal.set(0, 1, 0);
+    this.plane.constant = -(centre.y + 0.5 * this.cut * size.y);
+    this.renderer.clippingPlanes = [this.plane];
+  }
+
+  picture(): Promise<Blob> {
+    return new Promise((done) => {
+      this.keepPicture = (canvas) => canvas.toBlob((blob) => { if (blob) done(blob); }, 'image/png');
+      this.touch();
+    });
+  }
+
+  // Pixels of CSS that a millimetre takes at the middle of the view.
+  pixelsPerMillimetre(): number {
+    const distance = this.camera.position.distanceTo(this.orbit.target);
+    return this.canvas.clientHeight / (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360));
+  }
+
+  scaleBar(): { pixels: number; millimetres: number } {
+    const per = this.pixelsPerMillimetre(), millimetres = roundLength(140 / per);
+    return { pixels: per * millimetres, millimetres };
+  }
+
+  // The swatch under a point of the page, and the ray through it.
+  private ray(x: number, y: number): { index: number; ray: THREE.Ray } {
+    const box = this.canvas.getBoundingClientRect(), n = Math.max(1, this.swatches().length);
+    const index = Math.min(n - 1, Math.max(0, Math.floor(((x - box.left) / box.width) * n)));
+    const area = this.area(index);
+    this.camera.aspect = area.z / area.w;
+    this.camera.updateProjectionMatrix();
+    const pointer = new THREE.Vector2(((x - box.left - area.x) / area.z) * 2 - 1, 1 - ((y - box.top) / area.w) * 2);
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(pointer, this.camera);
+    return { index, ray: caster.ray };
+  }
+
+  // The yarn segment or pore under a point of the page: the nearest yarn that the ray passes within its radius; between
+  // yarns, the pore it passes through.
+  pick(x: number, y: number): Hit | null {
+    const { index, ray } = this.ray(x, y);
+    const swatch = this.swatches()[index];
+    if (!swatch) return null;
+    let best: Hit | null = null, nearest = Infinity;
+    const a = new THREE.Vector3(), b = new THREE.Vector3(), onRay = new THREE.Vector3(), onYarn = new THREE.Vector3();
+    swatch.yarns.forEach((yarns, textile) => {
+      const info = yarns.info, p = yarns.points, per = info.steps_per_segment;
+      for (let yarn = 0; yarn < info.yarn_radius.length; ++yarn) {
+        const radius = 1000 * info.yarn_radius[yarn]!;
+        for (let i = yarns.firstPoint[yarn]!; i + 1 < yarns.firstPoint[yarn + 1]!; ++i) {
+          a.fromArray(p, 4 * i);
+          b.fromArray(p, 4 * i + 4);
+          if (this.cut !== null && this.plane.distanceToPoint(a) < 0) continue;
+          const d2 = ray.distanceSqToSegment(a, b, onRay, onYarn);
+          if (d2 > radius * radius) continue;
+          const along = onRay.distanceTo(ray.origin) - Math.sqrt(radius * radius - d2);
+          if (along >= nearest) continue;
+          nearest = along;
+          const segment = Math.min(Math.floor((i - yarns.firstPoint[yarn]!) / per), info.yarn_segments[yarn]! - 1);
+          best = { swatch: index, textile, node: yarns.firstSegment[yarn]! + segment, place: ray.at(along, new THREE.Vector3()) };
+        }
+      }
+      if (best) return;
+      const pores = swatch.pores[textile], reach = 500 * Math.min(...info.pitch);
+      for (let i = 0; pores && i < pores.length / 3; ++i) {
+        a.fromArray(pores, 3 * i);
+        const d2 = ray.distanceSqToPoint(a);
+        if (d2 > reach * reach || Math.sqrt(d2) >= nearest) continue;
+        nearest = Math.sqrt(d2);
+        best = { swatch: index, textile, node: info.segments + i, place: a.clone() };
+      }
+    });
+    return best;
+  }
+
+  // Where the ray meets the face of a cloth (or the ground z = 0), in metres.
+  placeOnCloth(x: number, y: number): { swatch: number; at: [number, number, number] } | null {
+    const { index, ray } = this.ray(x, y);
+    const swatch = this.swatches()[index];
+    if (!swatch) return null;
+    let best: THREE.Vector3 | null = null;
+    for (const info of swatch.textiles) {
+      const n = new THREE.Vector3(...info.n), u = new THREE.Vector3(...info.u), v = new THREE.Vector3(...info.v);
+      const side = Math.sign(ray.origin.dot(n) - 1000 * new THREE.Vector3(...info.origin).dot(n)) || 1;
+      const face = new THREE.Vector3(...info.origin).addScaledVector(n, side * 0.5 * info.thickness).multiplyScalar(1000);
+      const hit = ray.intersectPlane(new THREE.Plane().setFromNormalAndCoplanarPoint(n, face), new THREE.Vector3());
+      if (!hit) continue;
+      const d = hit.clone().sub(face);
+      if (Math.abs(d.dot(u)) > 500 * info.size[0] || Math.abs(d.dot(v)) > 500 * info.size[1]) continue;
+      if (!best || hit.distanceTo(ray.origin) < best.distanceTo(ray.origin)) best = hit;
+    }
+    if (!best && swatch.textiles.length === 0) best = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
+    return best ? { swatch: index, at: [best.x / 1000, best.y / 1000, best.z / 1000] } : null;
+  }
+
+  // Where a place (mm) is on the canvas, in CSS pixels.
+  onScreen(place: THREE.Vector3, swatch: number): { x: number; y: number } {
+    const area = this.area(swatch);
+    this.camera.aspect = area.z / area.w;
+    this.camera.updateProjectionMatrix();
+    const p = place.clone().project(this.camera);
+    return { x: area.x + (0.5 + 0.5 * p.x) * area.z, y: (0.5 - 0.5 * p.y) * area.w };
+  }
+}

@@ -1,0 +1,176 @@
+// The yarns of one textile as round tubes: one instanced piece of tube per segment. Positions and saturations come from
+// textures, so that a frame uploads a few kilobytes and never rebuilds geometry; a moving sheet only replaces the
+// points' texture.
+import * as THREE from 'three';
+import type { Points, TextileInfo } from './protocol';
+
+export const MM = 1000;  // the page draws in millimetres
+
+const WIDTH = 1024;  // of the data textures
+
+function dataTexture(count: number, components: 1 | 4, data: Float32Array | Uint8Array): THREE.DataTexture {
+  const height = Math.max(1, Math.ceil(count / WIDTH));
+  const texture = new THREE.DataTexture(data, WIDTH, height, components === 4 ? THREE.RGBAFormat : THREE.RedFormat,
+    data instanceof Float32Array ? THREE.FloatType : THREE.UnsignedByteType);
+  texture.needsUpdate = true;
+  return texture;
+}
+
+const padded = (count: number) => WIDTH * Math.max(1, Math.ceil(count / WIDTH));
+
+export interface YarnLook {
+  natural: { value: number };            // 0 the colour bar, 1 natural colours
+  bar: { value: THREE.Vector4[] };       // 11 colours, opacity in w
+  levels: { value: number };
+  scale: { value: number };              // saturation steps
+}
+
+const HEAD = `
+uniform sampler2D uPoints; uniform sampler2D uSaturation;
+uniform vec3 uAcross0; uniform vec3 uAcross1; uniform vec3 uNormal; uniform float uMiddle; uniform float uScale;
+attribute vec2 aPlace;              // ring of the piece, angle
+attribute vec4 aPiece;              // first point, first and last point of the yarn, radius
+attribute vec4 aYarn;               // colour, family
+attribute float aNode;
+vec3 pointAt(float i) { int k = int(i + 0.5); return texelFetch(uPoints, ivec2(k % ${WIDTH}, k / ${WIDTH}), 0).xyz; }
+void place(out vec3 position_, out vec3 normal_) {
+  float i = aPiece.x + aPlace.x;
+  vec3 p = pointAt(i);
+  vec3 t = normalize(pointAt(min(i + 1.0, aPiece.z)) - pointAt(max(i - 1.0, aPiece.y)));
+  vec3 side = mix(uAcross0, uAcross1, aYarn.w);
+  vec3 up = normalize(cross(t, side)); side = cross(up, t);
+  normal_ = cos(aPlace.y) * side + sin(aPlace.y) * up;
+  position_ = p + aPiece.w * normal_;
+}`;
+
+const VARYINGS = 'varying vec4 vYarn; varying float vSaturation; varying vec2 vSurface; varying float vOcclusion;';
+
+export class Yarns {
+  readonly group = new THREE.Group();
+  readonly mesh: THREE.Mesh;
+  readonly points: Float32Array;        // four per point, mm
+  readonly saturation: Uint8Array;      // per node: segments, then pores
+  readonly firstPoint: number[] = [];   // per yarn, and one past the end
+  readonly firstSegment: number[] = [];
+  private readonly pointTexture: THREE.DataTexture;
+  private readonly saturationTexture: THREE.DataTexture;
+
+  constructor(readonly info: TextileInfo, points: Points, look: YarnLook, sides: number) {
+    let segment = 0, point = 0;
+    for (let y = 0; y < info.yarn_radius.length; ++y) {
+      this.firstPoint.push(point);
+      this.firstSegment.push(segment);
+      point += info.yarn_points[y]!;
+      segment += info.yarn_segments[y]!;
+    }
+    this.firstPoint.push(point);
+    this.firstSegment.push(segment);
+    this.points = new Float32Array(4 * padded(point));
+    this.saturation = new Uint8Array(padded(info.segments + info.pores));
+    this.setPoints(points);
+    this.pointTexture = dataTexture(point, 4, this.points);
+    this.saturationTexture = dataTexture(info.segments + info.pores, 1, this.saturation);
+    this.mesh = new THREE.Mesh(this.pieces(sides), this.material(look, false) as THREE.MeshPhysicalMaterial);
+    this.mesh.customDepthMaterial = this.material(look, true);
+    this.mesh.frustumCulled = false;
+    this.mesh.castShadow = this.mesh.receiveShadow = true;
+    this.group.add(this.mesh);
+  }
+
+  setPoints(points: Points): void {
+    const { origin, step, xyz } = points;
+    for (let i = 0; i < xyz.length / 3; ++i)
+      for (let k = 0; k < 3; ++k) this.points[4 * i + k] = MM * (origin[k]! + step[k]! * xyz[3 * i + k]!);
+    if (this.pointTexture) this.pointTexture.needsUpdate = true;
+  }
+
+  saturationChanged(): void { this.saturationTexture.needsUpdate = true; }
+
+  private pieces(sides: number): THREE.InstancedBufferGeometry {
+    const { info } = this;
+    const rings = info.steps_per_segment;
+    const geometry = new THREE.InstancedBufferGeometry();
+    const place: number[] = [], index: number[] = [];
+    for (let r = 0; r <= rings; ++r) for (let s = 0; s <= sides; ++s) place.push(r, (2 * Math.PI * s) / sides);
+    for (let r = 0; r < rings; ++r) for (let s = 0; s < sides; ++s) {
+      const a = r * (sides + 1) + s, b = a + sides + 1;
+      index.push(a, a + 1, b, a + 1, b + 1, b);
+    }
+    geometry.setAttribute('aPlace', new THREE.Float32BufferAttribute(place, 2));
+    geometry.setAttribute('position', new THREE.Float32BufferAttribute(new Float32Array(place.length / 2 * 3), 3));
+    geometry.setAttribute('normal', new THREE.Float32BufferAttribute(new Float32Array(place.length / 2 * 3), 3));
+    geometry.setIndex(index);
+    const piece = new Float32Array(4 * info.segments), yarn = new Float32Array(4 * info.segments), node = new Float32Array(info.segments);
+    let segment = 0;
+    for (let y = 0; y < info.yarn_radius.length; ++y) {
+      const first = this.firstPoint[y]!, last = this.firstPoint[y + 1]! - 1, colour = info.yarn_colour[y]!;
+      for (let s = 0; s < info.yarn_segments[y]!; ++s, ++segment) {
+        piece.set([first + s * rings, first, last, MM * info.yarn_radius[y]!], 4 * segment);
+        yarn.set([...colour, info.yarn_family[y]!], 4 * segment);
+        node[segment] = segment;
+      }
+    }
+    geometry.setAttribute('aPiece', new THREE.InstancedBufferAttribute(piece, 4));
+    geometry.setAttribute('aYarn', new THREE.InstancedBufferAttribute(yarn, 4));
+    geometry.setAttribute('aNode', new THREE.InstancedBufferAttribute(node, 1));
+    geometry.instanceCount = info.segments;
+    return geometry;
+  }
+
+  private material(look: YarnLook, depthOnly: boolean): THREE.Material {
+    const { info } = this;
+    const material = depthOnly ? new THREE.MeshDepthMaterial({ depthPacking: THREE.RGBADepthPacking })
+      : new THREE.MeshPhysicalMaterial({ roughness: 0.9, metalness: 0, side: THREE.DoubleSide, sheenRoughness: 0.6 });
+    const vector = (v: [number, number, number]) => ({ value: new THREE.Vector3(...v) });
+    const origin = new THREE.Vector3(...info.origin), normal = new THREE.Vector3(...info.n);
+    const uniforms = {
+      uPoints: { value: this.pointTexture }, uSaturation: { value: this.saturationTexture },
+      uAcross0: vector(info.u), uAcross1: vector(info.v), uNormal: vector(info.n),
+      uMiddle: { value: MM * origin.dot(normal) },
+      uNatural: look.natural, uBar: look.bar, uScale: look.scale,
+    };
+    material.onBeforeCompile = (shader) => {
+      Object.assign(shader.uniforms, uniforms);
+      const head = HEAD + (depthOnly ? '' : VARYINGS);
+      shader.vertexShader = head + '\n' + shader.vertexShader
+        .replace('#include <beginnormal_vertex>', 'vec3 placed, objectNormal; place(placed, objectNormal);')
+        .replace('#include <begin_vertex>', depthOnly ? 'vec3 placed, unusedNormal; place(placed, unusedNormal); vec3 transformed = placed;' : `
+          vec3 transformed = placed;
+          vYarn = aYarn;
+          int node = int(aNode + 0.5);
+          vSaturation = texelFetch(uSaturation, ivec2(node % ${WIDTH}, node / ${WIDTH}), 0).r * 255.0 / uScale;
+          vSurface = vec2(aPlace.x + aPiece.x, aPlace.y);
+          // Between the yarns less of the sky is seen: by the height above the middle of the sheet.
+          float height = abs(dot(placed, uNormal) - uMiddle) / (2.0 * aPiece.w);
+          vOcclusion = mix(0.35, 1.0, smoothstep(0.0, 0.85, height));`);
+      if (depthOnly) return;
+      shader.fragmentShader = `
+        uniform float uNatural; uniform vec4 uBar[11];
+        ${VARYINGS}
+        vec3 linearOf(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
+      ` + shader.fragmentShader
+        .replace('#include <color_fragment>', `
+          int level = vSaturation < 5e-4 ? 0 : clamp(int(ceil(10.0 * vSaturation - 1e-3)), 1, 10);
+          vec4 bar = uBar[level];
+          vec3 barColour = linearOf(mix(vec3(1.0), bar.rgb, bar.a));
+          float wet = smoothstep(0.0, 0.9, vSaturation);
+          vec3 natural = vYarn.rgb * mix(1.0, 0.42, wet);
+          // The lie of the twist: fine fibres winding around the yarn.
+          float winding = sin(5.0 * vSurface.y + 2.6 * vSurface.x) * 0.5 + sin(11.0 * vSurface.y + 5.7 * vSurface.x) * 0.5;
+          float fibres = 1.0 + mix(0.035, 0.06, uNatural) * winding * (1.0 - 0.6 * wet);
+          diffuseColor.rgb = mix(barColour, natural, uNatural) * fibres * vOcclusion;`)
+        .replace('#include <roughnessmap_fragment>', `
+          float roughnessFactor = mix(0.92, mix(0.95, 0.38, wet), uNatural);`);
+    };
+    material.customProgramCacheKey = () => `yarns-${depthOnly}`;
+    return material;
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
+    (this.mesh.material as THREE.Material).dispose();
+    this.mesh.customDepthMaterial?.dispose();
+    this.pointTexture.dispose();
+    this.saturationTexture.dispose();
+  }
+}
