@@ -5,6 +5,9 @@ install(TARGETS ${IMBIBE_MODULES} EXPORT ImbibeTargets
 install(TARGETS imbibe_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY src/imbibe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY fibres liquids fabrics scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/imbibe)
+if(EXISTS ${CMAKE_SOURCE_DIR}/viewer/dist/index.html)  # built by npm (the launcher does); `imbibe live` says when it is missing
+  install(DIRECTORY viewer/dist DESTINATION ${CMAKE_INSTALL_DATADIR}/imbibe/viewer)
+endif()
 install(EXPORT ImbibeTargets NAMESPACE Imbibe:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Imbibe)
 configure_package_config_file(cmake/ImbibeConfig.cmake.in ${CMAKE_BINARY_DIR}/ImbibeConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Imbibe)

@@ -131,7 +131,7 @@ class RunSession {
 
   int go() {
     ProgressWriter progress(std::cerr, progress_style(arguments_.progress));
-    const RunPlan plan = run_plan(scene_);
+    RunPlan plan = run_plan(scene_);
     RunHooks hooks;
     hooks.at_output = [&](const World& world, const StepReport& report) { write(world, report); };
     hooks.after_step = [&](const World& world, const StepReport& report) {

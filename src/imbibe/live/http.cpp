@@ -65,7 +65,7 @@ std::optional<Request> parse(std::string_view text) {
 
 // The page may load nothing from elsewhere and may not be put into a frame of another page.
 constexpr const char* safe_headers =
-    "Content-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+    "Content-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src data:; "
     "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'\r\n"
     "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n"
     "Cache-Control: no-store\r\nConnection: close\r\n";
