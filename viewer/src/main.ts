@@ -193,7 +193,8 @@ function showStatus(): void {
   const status = byId('status');
   if (status.innerHTML !== html) status.innerHTML = html;
   if (flags & Flag.replay) {
-    const bar = byId('seek').querySelector('input')!;
+    const bar = byId<HTMLInputElement>('drop-volume').onkeydown = (e) => { if (e.key === 'Enter' || e.key === 'Escape') (e.target as HTMLElement).blur(); };
+byId('seek').querySelector('input')!;
     bar.max = String(s.message?.duration ?? 1);
     if (document.activeElement !== bar || !bar.matches(':active')) bar.value = String(time);
   }

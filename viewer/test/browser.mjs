@@ -8,7 +8,7 @@ import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 export const root = resolve(dirname(fileURLToPath(import.meta.url)), '..', '..');
-const command = process.env.IMBIBE_COMMAND ?? join(root, 'build', 'release', 'imbibe');
+export const command = process.env.IMBIBE_COMMAND ?? join(root, 'build', 'release', 'imbibe');
 
 export async function openBrowser() {
   const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find((p) => existsSync(p));

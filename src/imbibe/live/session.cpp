@@ -216,11 +216,15 @@ bool Session::between_steps(World& world, Real& until) {
       todo.swap(commands_);
       if (quit_asked_) quit_ = stop_ = true;
     }
-    for (const Command& command : todo) {
-      if (stop_) break;
-      changed = handle(command) || changed;
+    while (!todo.empty() && !stop_) {
+      changed = handle(todo.front()) || changed;
+      todo.pop_front();
     }
-    if (stop_) return changed;
+    if (stop_) {  // what else was asked is for the world to come
+      const std::scoped_lock hold(lock_);
+      commands_.insert(commands_.begin(), std::make_move_iterator(todo.begin()), std::make_move_iterator(todo.end()));
+      return changed;
+    }
     until = failed_ ? until : scene_.duration;
     if (world.time < until) ended_ = false;
     const bool at_end = world.time >= until;
