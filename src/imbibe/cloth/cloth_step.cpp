@@ -43,7 +43,7 @@ void ClothScratch::Work::prepare(const Sheet& sheet, const ClothParams& params) 
   for (const Pin& pin : sheet.pins) {
     if (sheet.time < pin.until) inverse_mass[pin.node] = 0;
   }
-  update_materials(sheet, topology, params, materials);
+  update_materials(sheet, topology, params, elastic);
 }
 
 void ClothScratch::Work::update_normals(const Sheet& sheet) {
@@ -61,6 +61,8 @@ namespace {
 
 constexpr std::size_t node_tile = 1024;
 constexpr int contact_passes = 4;
+constexpr int most_passes = 5;
+constexpr Real converged_part = 0.1;  // of the strain error: energy goes with its square
 
 struct Step {
   Sheet& sheet;
@@ -165,27 +167,56 @@ void touch_solids(Step& s, Real h) {
   }
 }
 
-// Layers push on each other and on the solids in turn: a pile rests on what is below it.
-void touch(Step& s, Real h) {
-  const Real thickness = s.params.hand.thickness;
+SelfContactRules self_rules(const Step& s) {
+  return {.thickness = s.params.hand.thickness, .friction = s.params.contact.friction, .cling = s.sheet.cling.data(),
+          .area = s.work.node_area.data()};
+}
+
+void find_contacts(Step& s, Real h) {
   SelfContact& self = s.work.self;
-  const SelfContactRules rules{.thickness = thickness, .friction = s.params.contact.friction,
-                               .cling = s.sheet.cling.data(), .area = s.work.node_area.data()};
-  if (!s.params.contact.self) return touch_solids(s, h);
-  reserve_near_pairs(s.sheet, thickness, greatest_motion(s.sheet, h), self);
-  find_near_pairs(rules, s.nodes(), h, self);
-  const int passes = self.hits.empty() ? 1 : contact_passes;
-  for (int k = 0; k < passes; ++k) {
-    repel_near_pairs(rules, s.nodes(), h, 1.0 / passes, self);
-    touch_solids(s, h);
-  }
+  self.hits.clear();
+  s.report.self_contacts = 0;
+  if (!s.params.contact.self) return;
+  reserve_near_pairs(s.sheet, s.params.hand.thickness, greatest_motion(s.sheet, h), self);
+  find_near_pairs(self_rules(s), s.nodes(), h, self);
   s.report.self_contacts = self.touching;
-  reserve_near_pairs(s.sheet, thickness, greatest_motion(s.sheet, h), self);
+}
+
+void prevent_self_crossings(Step& s, Real h) {
+  if (!s.params.contact.self) return;
+  SelfContact& self = s.work.self;
+  reserve_near_pairs(s.sheet, s.params.hand.thickness, greatest_motion(s.sheet, h), self);
   const SweptReport swept = prevent_crossings(s.sheet, s.nodes(), h, self);
   s.report.swept_hits += swept.hits;
   s.report.rigid_zones += swept.zones;
   s.report.unresolved_crossings += swept.unresolved;
   self.used += greatest_motion(s.sheet, h);
+}
+
+struct SubstepErrors {
+  Real strain = 0;
+  Real turn = 0;
+};
+
+// Cloth, its layers and the solids push on each other in turn until a pass changes the strain by little: threads stay as
+// long as they are where contacts stop them, and a pile rests on what is below it.
+SubstepErrors solve_together(Step& s, Real h) {
+  const bool contacts = !s.work.self.hits.empty() || !s.loads.solids.empty();
+  const int least = contacts ? contact_passes : 1;
+  SubstepErrors errors;
+  begin_in_plane(s.work.topology, s.params, s.work.elastic);
+  for (int pass = 1; pass <= most_passes; ++pass) {
+    const InPlaneOutcome outcome = solve_in_plane(s.work.topology, s.params, s.nodes(), h, s.work.elastic);
+    errors.turn = std::max(errors.turn, outcome.threads.turn);
+    // Relaxation closes a gap ever more slowly: what is left is about the last change times the passes.
+    errors.strain = std::max(outcome.threads.change(), pass * outcome.relaxed.change());
+    if (pass <= contact_passes) {
+      repel_near_pairs(self_rules(s), s.nodes(), h, 1.0 / contact_passes, s.work.self);
+      touch_solids(s, h);
+    }
+    if (pass >= least && errors.strain < converged_part * s.params.strain_error) break;
+  }
+  return errors;
 }
 
 void move_nodes(Step& s, Real h) {
@@ -199,25 +230,28 @@ void move_nodes(Step& s, Real h) {
   }, node_tile);
 }
 
-ElasticErrors advance_substep(Step& s, Real h) {
+SubstepErrors advance_substep(Step& s, Real h) {
   apply_loads(s, h);
   move_pins(s, h);
-  const ElasticErrors errors = solve_elastic(s.work.topology, s.work.materials, s.params, s.nodes(), h);
-  touch(s, h);
+  find_contacts(s, h);
+  solve_bending(s.work.topology, s.params, s.nodes(), h, s.work.elastic);
+  const SubstepErrors errors = solve_together(s, h);
+  prevent_self_crossings(s, h);
   end_pins(s);
   move_nodes(s, h);
   return errors;
 }
 
-// Longest substep at which the transverse waves of a sheet hanging by its own weight are resolved.
+// A fifth of the longest substep at which the transverse waves of a sheet hanging by its own weight are resolved: it finds
+// its own length in a few substeps, whatever the sheet is doing at the start.
 Real first_substep(const Step& s) {
   const Real edge = s.work.topology.shortest_edge, length = edge * std::sqrt(static_cast<Real>(s.sheet.size()));
   const Real g = std::max(norm(s.loads.gravity), Real{1});
-  return std::clamp(0.25 * edge / std::sqrt(g * length), s.params.shortest_substep, s.params.longest_substep);
+  return std::clamp(0.05 * edge / std::sqrt(g * length), s.params.shortest_substep, s.params.longest_substep);
 }
 
 // Errors and turn go as the square of the substep.
-Real next_substep(const ClothParams& params, Real last, Real taken, const ElasticErrors& errors) {
+Real next_substep(const ClothParams& params, Real last, Real taken, const SubstepErrors& errors) {
   constexpr Real greatest_turn = 0.25;  // an eighth of the bound in threads.h, which holds for straight threads
   const Real part = std::max(errors.strain / params.strain_error, errors.turn / greatest_turn);
   const Real allowed = part > 0 ? 0.9 * taken / std::sqrt(part) : 2 * last;
@@ -238,7 +272,7 @@ void require_finite(const Step& s) {
 
 void measure(Step& s) {
   s.report.greatest_strain = greatest_strain(s.sheet, s.work.topology, s.params);
-  s.report.elastic_energy = stored_energy(s.sheet, s.work.topology, s.work.materials, s.params);
+  s.report.elastic_energy = stored_energy(s.sheet, s.work.topology, s.work.elastic, s.params);
   s.report.kinetic_energy = kinetic_energy(s.sheet);
   for (std::size_t i = 0; i < s.sheet.size(); ++i) {
     s.report.potential_energy -= s.sheet.mass(i) * dot(s.loads.gravity, s.sheet.position[i]);
@@ -268,14 +302,10 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
   while (s.elapsed < dt) {
     const Real left = dt - s.elapsed, count = std::max(Real{1}, std::ceil(left / sheet.substep));
     const Real h = left / count;
-    ElasticErrors errors = advance_substep(s, h);
+    const SubstepErrors errors = advance_substep(s, h);
     s.elapsed = count == 1 ? dt : s.elapsed + h;
     ++report.substeps;
     report.substep = std::min(report.substep, h);
-    if (s.elapsed == dt && params.model == ClothModel::xpbd) {
-      errors.strain = std::max(errors.strain, thread_strain_error(work.topology.thread_stretch, sheet.position.data(),
-                                                                  work.materials.thread_solve));
-    }
     report.strain_error = std::max(report.strain_error, errors.strain);
     sheet.substep = next_substep(params, sheet.substep, h, errors);
   }
@@ -290,7 +320,7 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
 
 Real elastic_energy(const Sheet& sheet, const ClothParams& params, ClothScratch& scratch) {
   scratch.work().prepare(sheet, params);
-  return stored_energy(sheet, scratch.work().topology, scratch.work().materials, params);
+  return stored_energy(sheet, scratch.work().topology, scratch.work().elastic, params);
 }
 
 }  // namespace imbibe

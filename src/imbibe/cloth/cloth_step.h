@@ -48,7 +48,7 @@ struct ClothParams {
   Real damping = 1e-3;    // s: stress follows strain + damping * strain rate
   ClothAirParams air{};
   ClothContactParams contact{};
-  Real strain_error = 0.005;  // xpbd: strain that the solver may leave beyond the material's own; sets the substeps
+  Real strain_error = 0.002;  // xpbd: strain that the solver may leave beyond the material's own; sets the substeps
   Real longest_substep = 1e-3;   // s
   Real shortest_substep = 1e-6;  // s
 };

@@ -15,7 +15,7 @@ struct ClothScratch::Work {
   std::vector<Index> node_triangles;
   std::vector<Real> node_area;              // m2 of cloth
 
-  ElasticMaterials materials;
+  ElasticWork elastic;
   std::vector<Real> inverse_mass;           // 1/kg, 0 for pinned nodes
   std::vector<Vec3> held;                   // N s given to pinned nodes in a substep
   std::vector<Vec3> normal;                 // of the nodes, unit

@@ -10,20 +10,26 @@ namespace {
 constexpr std::size_t tile = 1024;
 constexpr Real shear_weight = 0.25;  // an angle of four times a strain shows as little (1 deg against 0.5 %)
 
-// Calls solve(piece, material) for every piece, colour by colour; what it returns is kept as the greatest of each tile.
+// What a piece counts in averages over the cloth; springs of one sheet count alike.
+Real area_of(const SpringPiece&) { return 1; }
+template <std::size_t N>
+Real area_of(const StretchPiece<N>& piece) { return piece.area; }
+
+// Calls solve(piece, its number, outcome of its tile) for every piece, colour by colour; adds the outcomes.
 template <class Piece, class Solve>
-void pass(const PieceList<Piece>& list, const std::vector<PieceMaterial>& materials, std::vector<Real>& tile_error,
-          Solve&& solve) {
+PassOutcome pass(const PieceList<Piece>& list, std::vector<PassOutcome>& tiles, Solve&& solve) {
+  PassOutcome all;
   for (std::size_t c = 0; c + 1 < list.colours.size(); ++c) {
-    const std::size_t first = list.colours[c];
-    parallel_tiles(list.colours[c + 1] - first, [&](std::size_t begin, std::size_t end) {
-      Real greatest = tile_error[begin / tile];
-      for (std::size_t k = first + begin; k < first + end; ++k) {
-        greatest = std::max(greatest, solve(list.pieces[k], materials[k]));
-      }
-      tile_error[begin / tile] = greatest;
+    const std::size_t first = list.colours[c], count = list.colours[c + 1] - first;
+    tiles.assign((count + tile - 1) / tile, {});
+    parallel_tiles(count, [&](std::size_t begin, std::size_t end) {
+      PassOutcome outcome;
+      for (std::size_t k = first + begin; k < first + end; ++k) solve(list.pieces[k], k, outcome);
+      tiles[begin / tile] = outcome;
     }, tile);
+    for (const PassOutcome& outcome : tiles) all += outcome;
   }
+  return all;
 }
 
 template <class Piece, class Dry>
@@ -50,7 +56,7 @@ Real energy_of(const std::vector<Piece>& pieces, const std::vector<PieceMaterial
 
 }  // namespace
 
-void update_materials(const Sheet& sheet, const SheetTopology& t, const ClothParams& params, ElasticMaterials& m) {
+void update_materials(const Sheet& sheet, const SheetTopology& t, const ClothParams& params, ElasticWork& m) {
   const FabricHand& hand = params.hand;
   if (params.model == ClothModel::provot) {
     const ProvotParams& p = params.provot;
@@ -70,45 +76,65 @@ void update_materials(const Sheet& sheet, const SheetTopology& t, const ClothPar
     fill(sheet, params, t.triangle_shear.pieces, m.triangle_shear, shear);
     fill(sheet, params, t.thread_bend.pieces, m.thread_bend, bend);
     fill(sheet, params, t.cell_bend.pieces, m.cell_bend, bend);
+    fill(sheet, params, t.ring_bend.pieces, m.ring_bend, bend);
   }
-  const std::size_t most = std::max({t.springs.pieces.size(), t.triangle_stretch.pieces.size(),
-                                     t.cell_bend.pieces.size()});
-  m.tile_error.resize(most / tile + 1);
 }
 
-ElasticErrors solve_elastic(const SheetTopology& t, ElasticMaterials& m, const ClothParams& params,
-                            const NodeMotion& nodes, Real dt) {
-  Real turn = 0;
-  std::fill(m.tile_error.begin(), m.tile_error.end(), 0);
-  const auto stretch = [&](const auto& piece, const PieceMaterial& material) {
-    return solve_stretch(piece, nodes, material.stiffness, material.damping, dt);
+void solve_bending(const SheetTopology& t, const ClothParams& params, const NodeMotion& nodes, Real dt,
+                   ElasticWork& work) {
+  if (params.model == ClothModel::provot) return;  // its flexion springs are springs
+  solve_thread_bend(t.thread_bend, work.thread_bend, nodes, dt, work.threads);
+  const auto bend = [&](const std::vector<PieceMaterial>& materials) {
+    return [&, dt](const auto& piece, std::size_t k, PassOutcome&) {
+      solve_bend(piece, nodes, materials[k].stiffness, materials[k].damping, dt);
+    };
   };
-  const auto shear = [&](const auto& piece, const PieceMaterial& material) {
-    return shear_weight * solve_shear(piece, nodes, material.stiffness, material.damping, dt);
-  };
-  const auto bend = [&](const auto& piece, const PieceMaterial& material) {
-    solve_bend(piece, nodes, material.stiffness, material.damping, dt);
-    return Real{0};
+  pass(t.cell_bend, work.tiles, bend(work.cell_bend));
+  pass(t.ring_bend, work.tiles, bend(work.ring_bend));
+}
+
+void begin_in_plane(const SheetTopology& t, const ClothParams& params, ElasticWork& work) {
+  if (params.model == ClothModel::provot) {
+    work.given_stretch.assign(t.springs.pieces.size(), 0);
+    return;
+  }
+  work.given_stretch.assign(t.triangle_stretch.pieces.size(), 0);
+  work.given_cell_shear.assign(t.cell_shear.pieces.size(), 0);
+  work.given_triangle_shear.assign(t.triangle_shear.pieces.size(), 0);
+  begin_thread_stretch(t.thread_stretch, work.threads);
+}
+
+InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params, const NodeMotion& nodes, Real dt,
+                              ElasticWork& work) {
+  InPlaneOutcome all;
+  const auto stretch = [&](const std::vector<PieceMaterial>& materials) {
+    return [&, dt](const auto& piece, std::size_t k, PassOutcome& outcome) {
+      const Real change = solve_stretch(piece, nodes, materials[k].stiffness, materials[k].damping, dt, work.given_stretch[k]);
+      outcome.add(change, area_of(piece));
+    };
   };
   if (params.model == ClothModel::provot) {
-    pass(t.springs, m.springs, m.tile_error, stretch);
-    pass(t.springs, m.springs, m.tile_error, [&](const SpringPiece& piece, const PieceMaterial&) {
+    all.relaxed = pass(t.springs, work.tiles, stretch(work.springs));
+    pass(t.springs, work.tiles, [&](const SpringPiece& piece, std::size_t, PassOutcome&) {
       if (piece.kind != SpringKind::flexion) correct_stretch(piece, nodes, params.provot.limit, dt);
-      return Real{0};
     });
-  } else {
-    // The stiffest last: what is solved last holds best.
-    solve_thread_bend(t.thread_bend, m.thread_bend, nodes, dt, m.thread_solve);
-    pass(t.cell_bend, m.cell_bend, m.tile_error, bend);
-    pass(t.cell_shear, m.cell_shear, m.tile_error, shear);
-    pass(t.triangle_shear, m.triangle_shear, m.tile_error, shear);
-    turn = solve_thread_stretch(t.thread_stretch, m.thread_stretch, nodes, dt, m.thread_solve);
-    pass(t.triangle_stretch, m.triangle_stretch, m.tile_error, stretch);
+    return all;
   }
-  return {*std::max_element(m.tile_error.begin(), m.tile_error.end()), turn};
+  const auto shear = [&](const std::vector<PieceMaterial>& materials, std::vector<Real>& given) {
+    return [&, dt](const auto& piece, std::size_t k, PassOutcome& outcome) {
+      const Real change = solve_shear(piece, nodes, materials[k].stiffness, materials[k].damping, dt, given[k]);
+      outcome.add(shear_weight * change, piece.area);
+    };
+  };
+  // The stiffest last: what is solved last holds best.
+  all.relaxed += pass(t.cell_shear, work.tiles, shear(work.cell_shear, work.given_cell_shear));
+  all.relaxed += pass(t.triangle_shear, work.tiles, shear(work.triangle_shear, work.given_triangle_shear));
+  all.relaxed += pass(t.triangle_stretch, work.tiles, stretch(work.triangle_stretch));
+  all.threads = solve_thread_stretch(t.thread_stretch, work.thread_stretch, nodes, dt, work.threads);
+  return all;
 }
 
-Real stored_energy(const Sheet& sheet, const SheetTopology& t, const ElasticMaterials& m, const ClothParams& params) {
+Real stored_energy(const Sheet& sheet, const SheetTopology& t, const ElasticWork& m, const ClothParams& params) {
   const Vec3* x = sheet.position.data();
   const auto stretch = [&](const auto& piece) {
     const Real strain = norm(linear_form(x, piece.node, piece.weight)) - 1;
@@ -125,7 +151,8 @@ Real stored_energy(const Sheet& sheet, const SheetTopology& t, const ElasticMate
   };
   return energy_of(t.thread_stretch.pieces, m.thread_stretch, stretch) + energy_of(t.triangle_stretch.pieces, m.triangle_stretch, stretch) +
          energy_of(t.cell_shear.pieces, m.cell_shear, shear) + energy_of(t.triangle_shear.pieces, m.triangle_shear, shear) +
-         energy_of(t.thread_bend.pieces, m.thread_bend, bend) + energy_of(t.cell_bend.pieces, m.cell_bend, bend);
+         energy_of(t.thread_bend.pieces, m.thread_bend, bend) + energy_of(t.cell_bend.pieces, m.cell_bend, bend) +
+         energy_of(t.ring_bend.pieces, m.ring_bend, bend);
 }
 
 Real greatest_strain(const Sheet& sheet, const SheetTopology& t, const ClothParams& params) {

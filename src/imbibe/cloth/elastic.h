@@ -17,29 +17,33 @@ struct PieceMaterial {
   Real damping = 0;    // s
 };
 
-struct ElasticMaterials {
-  std::vector<PieceMaterial> thread_stretch, triangle_stretch, cell_shear, triangle_shear, thread_bend, cell_bend, springs;
-  std::vector<Real> tile_error;  // greatest strain error of each tile of a pass
-  ThreadSolve thread_solve;
+struct ElasticWork {
+  std::vector<PieceMaterial> thread_stretch, triangle_stretch, cell_shear, triangle_shear, thread_bend, cell_bend, ring_bend,
+      springs;
+  std::vector<Real> given_stretch, given_cell_shear, given_triangle_shear;  // impulses of the passes of a substep [J s]
+  std::vector<PassOutcome> tiles;
+  ThreadSolve threads;
 };
 
 // Stiffness and damping of every piece, from the parameters and the nodes' wet factors.
-void update_materials(const Sheet& sheet, const SheetTopology& topology, const ClothParams& params,
-                      ElasticMaterials& materials);
+void update_materials(const Sheet& sheet, const SheetTopology& topology, const ClothParams& params, ElasticWork& work);
 
-// How well a substep was resolved.
-struct ElasticErrors {
-  Real strain = 0;  // greatest strain that relaxation left beyond the material's own (impulse.h)
-  Real turn = 0;    // greatest of the threads (threads.h)
+// Once a substep: bending of the fabric.
+void solve_bending(const SheetTopology& topology, const ClothParams& params, const NodeMotion& nodes, Real dt,
+                   ElasticWork& work);
+
+// One pass over what holds the sheet together in its plane: shear and stretch of the fabric, or the springs with their
+// correction. The impulses of the passes of a substep add up to those of backward Euler; begin_ comes before the first.
+void begin_in_plane(const SheetTopology& topology, const ClothParams& params, ElasticWork& work);
+struct InPlaneOutcome {
+  PassOutcome threads;  // solved at once
+  PassOutcome relaxed;  // solved one by one
 };
-
-// One pass over all pieces.
-ElasticErrors solve_elastic(const SheetTopology& topology, ElasticMaterials& materials, const ClothParams& params,
-                   const NodeMotion& nodes, Real dt);
+InPlaneOutcome solve_in_plane(const SheetTopology& topology, const ClothParams& params, const NodeMotion& nodes, Real dt,
+                              ElasticWork& work);
 
 // J, of the positions as they are; and the elongation of the most stretched piece.
-Real stored_energy(const Sheet& sheet, const SheetTopology& topology, const ElasticMaterials& materials,
-                   const ClothParams& params);
+Real stored_energy(const Sheet& sheet, const SheetTopology& topology, const ElasticWork& work, const ClothParams& params);
 Real greatest_strain(const Sheet& sheet, const SheetTopology& topology, const ClothParams& params);
 
 }  // namespace imbibe

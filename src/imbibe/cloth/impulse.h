@@ -1,29 +1,30 @@
 // The impulse of one elastic piece over a substep, backward in time.
 //
 //   energy k C(x)^2 / 2,  force -k (C + beta dC/dt) grad C
-//   J = -dt k (C~ + beta C') / (1 + dt k (dt + beta) S),   S = sum over nodes of |grad C|^2 / m
+//   J = -[dt k (C~ + beta C') + J_0] / (1 + dt k (dt + beta) S),   S = sum over nodes of |grad C|^2 / m
 //
-// J: what the piece gives to its nodes along grad C; C~: C where the velocities would carry the nodes in dt; C' = grad C .
+// J: what the piece gives to its nodes along grad C, J_0 what it gave in passes before this one; C~: C where the velocities would carry the nodes in dt; C' = grad C .
 // v; beta damping time s; m nodal mass (infinite when pinned). With one piece this is the backward Euler step of a damped
 // oscillator: bounded for every k and dt, energy falls. Pieces are solved one after the other, once per substep: extended
-// position-based dynamics with small steps (Macklin, Mueller & Chentanez, MIG 2016, eq. 18; Macklin et al., SCA 2019),
+// position-based dynamics (Macklin, Mueller & Chentanez, MIG 2016, eq. 18) with small steps (Macklin et al., SCA 2019),
 // written for velocities so that momentum is kept to rounding.
-// Neighbours that are solved later pull a piece apart again, by at most dt |J| S when their tension is like its own: the
-// strain that this leaves is the error that sets the substep (cloth_step.h). Up to a tenth of the piece's own strain
-// |J|/(dt k) it is not counted: no fabric's stiffness is known better. Carrying J over from substep to substep would remove
-// the error at rest, but with more than half of J carried long waves gain energy.
-// Tested in tests/cloth/impulse_test.cpp against the closed form of the oscillator.
+// Pieces that are solved later undo a part of what an earlier one did. Passes with J_0 close that gap; what a pass still
+// changes says how far the substep is from backward Euler (cloth_step.cpp).
+// Carrying J over from substep to substep instead was looked at: with more than half of J carried, long waves gain energy.
+// Tested in tests/cloth/threads_test.cpp against the closed form of the oscillator.
 #pragma once
+
+#include <algorithm>
 
 #include "imbibe/cloth/topology.h"
 
 namespace imbibe {
 
-// The pure equation; `value` = C~, `rate` = C', `mobility` = S. Any unit of C.
+// The pure equation; `value` = C~, `rate` = C', `mobility` = S, `given` = J_0. Any unit of C.
 template <class T>
-T elastic_impulse(const T& value, const T& rate, Real stiffness, Real damping, Real mobility, Real dt) {
+T elastic_impulse(const T& value, const T& rate, Real stiffness, Real damping, Real mobility, Real dt, const T& given = {}) {
   const Real soft = dt * stiffness;
-  return (value + rate * damping) * (-soft / (1 + soft * (dt + damping) * mobility));
+  return ((value + rate * damping) * soft + given) * (-1 / (1 + soft * (dt + damping) * mobility));
 }
 
 // Nodes as the pieces see them. A pinned node has mobility 0; what is given to it is summed in `held`.
@@ -66,20 +67,39 @@ Real mobility_of(const NodeMotion& nodes, const std::array<Index, N>& node, cons
   return sum;
 }
 
-inline constexpr Real uncounted_part = 0.1;  // of a piece's own strain
+// What a pass over pieces changed: the strains by which its impulses alone moved them, dt |J| S.
+struct PassOutcome {
+  Real turn = 0;                      // threads.h
+  Real greatest = 0;                  // change of strain
+  Real squares = 0, area = 0;         // of the changes, over the cloth
 
-// Solves one piece of stretch (or a spring); returns the strain error.
+  // Where a sheet hangs by a point the tension grows without bound as the mesh gets finer, and so does its error, over
+  // an area that shrinks: one piece may be wrong by ten times what the sheet may be on average.
+  Real change() const { return area > 0 ? std::max(std::sqrt(squares / area), 0.1 * greatest) : 0; }
+  void add(Real changed, Real piece_area) {
+    greatest = std::max(greatest, changed);
+    squares += piece_area * changed * changed, area += piece_area;
+  }
+  PassOutcome& operator+=(const PassOutcome& o) {
+    turn = std::max(turn, o.turn), greatest = std::max(greatest, o.greatest);
+    squares += o.squares, area += o.area;
+    return *this;
+  }
+};
+
+// Solves one piece of stretch (or a spring), adds to `given` what it gave, and returns the change of strain.
 template <class Piece>
-Real solve_stretch(const Piece& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt) {
+Real solve_stretch(const Piece& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt, Real& given) {
   const LinearForm form = linear_form(nodes, piece.node, piece.weight);
   const Real mobility = mobility_of(nodes, piece.node, piece.weight);
   const Vec3 ahead = form.value + dt * form.rate;
   const Real length = norm(ahead);
   if (!(length > 0)) return 0;  // no direction: the piece is folded to a point
   const Vec3 along = ahead / length;
-  const Real impulse = elastic_impulse(length - 1, dot(along, form.rate), stiffness, damping, mobility, dt);
+  const Real impulse = elastic_impulse(length - 1, dot(along, form.rate), stiffness, damping, mobility, dt, given);
   for (std::size_t k = 0; k < piece.node.size(); ++k) nodes.give(piece.node[k], (piece.weight[k] * impulse) * along);
-  return std::abs(impulse) * (mobility * dt - uncounted_part / (dt * stiffness));
+  given += impulse;
+  return std::abs(impulse) * mobility * dt;
 }
 
 // Provot's correction: a piece longer than (1 + limit) of its rest length is brought back to it, by an impulse shared by
@@ -97,9 +117,9 @@ void correct_stretch(const Piece& piece, const NodeMotion& nodes, Real limit, Re
   for (std::size_t k = 0; k < piece.node.size(); ++k) nodes.give(piece.node[k], piece.weight[k] * impulse);
 }
 
-// As solve_stretch; the error is an angle.
+// As solve_stretch; returns the change of the angle.
 template <std::size_t N>
-Real solve_shear(const ShearPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt) {
+Real solve_shear(const ShearPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt, Real& given) {
   const LinearForm weft = linear_form(nodes, piece.node, piece.weft), warp = linear_form(nodes, piece.node, piece.warp);
   const Vec3 a = weft.value + dt * weft.rate, b = warp.value + dt * warp.rate;
   const Real length_a = norm(a), length_b = norm(b);
@@ -114,9 +134,10 @@ Real solve_shear(const ShearPiece<N>& piece, const NodeMotion& nodes, Real stiff
     mobility += nodes.inverse_mass[piece.node[k]] * squared_norm(gradient[k]);
   }
   const Real rate = dot(gradient_a, weft.rate) + dot(gradient_b, warp.rate);
-  const Real impulse = elastic_impulse(cosine, rate, stiffness, damping, mobility, dt);
+  const Real impulse = elastic_impulse(cosine, rate, stiffness, damping, mobility, dt, given);
   for (std::size_t k = 0; k < N; ++k) nodes.give(piece.node[k], impulse * gradient[k]);
-  return std::abs(impulse) * (mobility * dt - uncounted_part / (dt * stiffness));
+  given += impulse;
+  return std::abs(impulse) * mobility * dt;
 }
 
 template <std::size_t N>

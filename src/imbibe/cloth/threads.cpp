@@ -8,15 +8,11 @@
 namespace imbibe {
 namespace {
 
-// Where a sheet hangs by a point the tension grows without bound as the mesh gets finer, and so does its error, over an
-// area that shrinks: a single edge may be wrong by ten times what the sheet may be on average.
-constexpr Real singular_part = 0.1;
-
-// The edges [first, end) of one thread.
-Real solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_t first, std::size_t end,
+// One pass over the edges [first, end) of one thread: the changes of their impulses.
+PassOutcome solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_t first, std::size_t end,
                   const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt, ThreadSolve& work) {
   // Down: directions, and elimination of the lower diagonal.
-  Real upper_before = 0, impulse_before = 0;  // of the edge before
+  Real upper_before = 0, change_before = 0;  // of the edge before
   Real b_before = 0;
   Vec3 direction_before;
   for (std::size_t e = first; e < end; ++e) {
@@ -31,10 +27,11 @@ Real solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_t first
     const Real reach = dt + m.damping;
     const Real lower = -reach * b * b_before * wi * dot(direction, direction_before);
     const Real diagonal = 1 / (dt * m.stiffness) + reach * b * b * (wi + wj) - lower * upper_before;
-    const Real side = -(length - 1 + m.damping * dot(direction, rate)) - lower * impulse_before;
+    const Real side = -(length - 1 + m.damping * dot(direction, rate)) - work.impulse[e] / (dt * m.stiffness) -
+                      lower * change_before;
     const Real inverse = 1 / diagonal;
     work.direction[e] = direction;
-    impulse_before = work.impulse[e] = side * inverse;
+    change_before = work.change[e] = side * inverse;
     if (e + 1 < end) {
       const StretchPiece<2>& next = threads.pieces[e + 1];
       const Real b_next = next.weight[1];
@@ -48,21 +45,21 @@ Real solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_t first
     direction_before = direction;
   }
   // Up: the impulses, given to the nodes.
-  Real turn = 0, after = 0;
+  PassOutcome outcome;
+  Real after = 0;
   for (std::size_t e = end; e-- > first;) {
     const StretchPiece<2>& piece = threads.pieces[e];
-    Real& impulse = work.impulse[e];
-    if (e + 1 < end) impulse -= work.upper[e] * after;
-    after = impulse;
+    const Real change = after = work.change[e] - (e + 1 < end ? work.upper[e] * after : 0);
     const Real b = piece.weight[1];
-    const Vec3 given = (b * impulse) * work.direction[e];
+    const Vec3 given = (b * change) * work.direction[e];
     nodes.give(piece.node[0], -given);
     nodes.give(piece.node[1], given);
-    work.expected_strain[e] = -impulse / (dt * materials[e].stiffness);
-    turn = std::max(turn, dt * std::abs(impulse) * b * b *
-                              (nodes.inverse_mass[piece.node[0]] + nodes.inverse_mass[piece.node[1]]));
+    const Real all = work.impulse[e] += change;
+    const Real reach = dt * b * b * (nodes.inverse_mass[piece.node[0]] + nodes.inverse_mass[piece.node[1]]);
+    outcome.turn = std::max(outcome.turn, std::abs(all) * reach);
+    outcome.add(std::abs(change) * reach, piece.area);
   }
-  return turn;
+  return outcome;
 }
 
 // The nodes [first, end) of one thread, without its ends. Rows are divided by dt + beta, which makes the matrix symmetric.
@@ -116,15 +113,22 @@ void for_threads(const ThreadList<Piece>& threads, Solve&& solve) {
 
 }  // namespace
 
-Real solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads, const std::vector<PieceMaterial>& materials,
-                          const NodeMotion& nodes, Real dt, ThreadSolve& work) {
+void begin_thread_stretch(const ThreadList<StretchPiece<2>>& threads, ThreadSolve& work) {
   const std::size_t n = threads.pieces.size();
-  work.direction.resize(n), work.upper.resize(n), work.impulse.resize(n), work.expected_strain.resize(n);
-  work.thread_turn.assign(threads.size(), 0);
+  work.direction.resize(n), work.upper.resize(n), work.change.resize(n);
+  work.impulse.assign(n, 0);
+  work.outcome.resize(threads.size());
+}
+
+PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads,
+                                    const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt,
+                                    ThreadSolve& work) {
   for_threads(threads, [&](std::size_t t) {
-    work.thread_turn[t] = solve_stretch(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work);
+    work.outcome[t] = solve_stretch(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work);
   });
-  return threads.size() == 0 ? 0 : *std::max_element(work.thread_turn.begin(), work.thread_turn.end());
+  PassOutcome all;
+  for (const PassOutcome& outcome : work.outcome) all += outcome;
+  return all;
 }
 
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
@@ -133,28 +137,6 @@ void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vecto
   for_threads(threads, [&](std::size_t t) {
     solve_bend(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work.bend);
   });
-}
-
-Real thread_strain_error(const ThreadList<StretchPiece<2>>& threads, const Vec3* position, const ThreadSolve& work) {
-  struct Errors {
-    Real squares = 0, area = 0, greatest = 0;
-    Errors& operator+=(const Errors& o) {
-      squares += o.squares, area += o.area, greatest = std::max(greatest, o.greatest);
-      return *this;
-    }
-  };
-  const Errors all = parallel_sum(threads.pieces.size(), [&](std::size_t begin, std::size_t end) {
-    Errors sum;
-    for (std::size_t e = begin; e < end; ++e) {
-      const StretchPiece<2>& piece = threads.pieces[e];
-      const Real strain = norm(linear_form(position, piece.node, piece.weight)) - 1;
-      const Real expected = work.expected_strain[e];
-      const Real error = std::max(Real{0}, std::abs(strain - expected) - uncounted_part * std::abs(expected));
-      sum += {piece.area * error * error, piece.area, error};
-    }
-    return sum;
-  });
-  return all.area > 0 ? std::max(std::sqrt(all.squares / all.area), singular_part * all.greatest) : 0;
 }
 
 }  // namespace imbibe

@@ -11,7 +11,8 @@
 //
 // Why: relaxing edges one by one leaves each thread longer by dt^2 times its tension over a nodal mass, which for a cloth
 // hung up by an edge asks for substeps of tens of microseconds. Here tension passes through a whole thread in one substep,
-// and what is left comes only from the threads that cross it. Directions are those at the predicted places; that is
+// and what is left comes only from the threads that cross it. A second or third pass removes that and what turning edges
+// leave, without which stirred cloth gains energy at substeps near a millisecond. Directions are those at the predicted places; that is
 // stable while the transverse waves of the tension are resolved,
 //   2 dt |J| b^2 (w_i + w_j) < 2                                      (turn, below)
 // Source: direct solution of chains of constraints, Deul et al., Comput. Graph. Forum 37 (2018) 313, for rods.
@@ -30,9 +31,9 @@ struct PieceMaterial;
 // Work space of the edges, thread by thread.
 struct ThreadSolve {
   std::vector<Vec3> direction;
-  std::vector<Real> upper, impulse;  // eliminated upper diagonal; right-hand side, then J [J s]
-  std::vector<Real> expected_strain; // the material's own strain at the impulses found
-  std::vector<Real> thread_turn;     // greatest of each thread
+  std::vector<Real> upper, change;   // eliminated upper diagonal; right-hand side of a pass
+  std::vector<Real> impulse;         // J of all passes [J s]
+  std::vector<PassOutcome> outcome;  // of each thread
 
   struct BendRow {
     Real diagonal = 0, lower1 = 0, lower2 = 0;  // of the factors L D L^T
@@ -41,14 +42,13 @@ struct ThreadSolve {
   std::vector<BendRow> bend;
 };
 
-// Solves all weft threads, then all warp threads. Returns the greatest `turn` = dt |J| b^2 (w_i + w_j).
-Real solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads, const std::vector<PieceMaterial>& materials,
-                          const NodeMotion& nodes, Real dt, ThreadSolve& work);
+// One pass: all weft threads, then all warp threads, from where the passes before left the velocities (new directions, and
+// what the warp and contacts did to the weft). begin_ comes before the first pass of a substep.
+void begin_thread_stretch(const ThreadList<StretchPiece<2>>& threads, ThreadSolve& work);
+PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads,
+                                    const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt,
+                                    ThreadSolve& work);
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
                        const NodeMotion& nodes, Real dt, ThreadSolve& work);
-
-// Strain of the edges as they are beyond expected_strain, less a tenth of that (impulse.h): root mean square over the
-// cloth, and at least a tenth of the greatest.
-Real thread_strain_error(const ThreadList<StretchPiece<2>>& threads, const Vec3* position, const ThreadSolve& work);
 
 }  // namespace imbibe

@@ -171,29 +171,44 @@ std::map<std::array<Index, 2>, EdgeSides> edges_of(const Sheet& sheet) {
   return edges;
 }
 
-// Isometric bending about the inner edge a-b with opposite corners c, d. The fold is across the edge, so the stiffness is
-// that of the direction across it.
-BendPiece<4> fold_of(const MaterialMap& at, Index a, Index b, Index c, Index d) {
-  const MaterialPoint pa = at(a), pb = at(b), pc = at(c), pd = at(d);
-  const Real at_a_c = cotangent(pa, pb, pc), at_a_d = cotangent(pa, pb, pd);
-  const Real at_b_c = cotangent(pb, pa, pc), at_b_d = cotangent(pb, pa, pd);
-  const Real area = 0.5 * (std::abs(doubled_area(pa, pb, pc)) + std::abs(doubled_area(pa, pb, pd)));
-  const Real length = distance(pa, pb);
-  const Real across_u = (pb.v - pa.v) / length;  // u component of the unit vector across the edge
-  const Real factor = 3 / area;
-  return {{a, b, c, d},
-          {at_b_c + at_b_d, at_a_c + at_a_d, -at_a_c - at_b_c, -at_a_d - at_b_d},
-          factor * across_u * across_u, factor * (1 - across_u * across_u), 0};
+// s = sum over neighbours of (cot + cot)/2 (x_j - x_i); Laplacian = s/A, A a third of the triangles around; energy =
+// B A |s/A|^2/2.
+void add_rings(const Sheet& sheet, SheetTopology& t) {
+  const MaterialMap at{sheet};
+  std::vector<std::map<Index, Real>> weights(sheet.size());
+  std::vector<Real> area(sheet.size());
+  std::vector<bool> hem(sheet.size());
+  for (const auto& n : sheet.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = n[k], b = n[(k + 1) % 3], c = n[(k + 2) % 3];
+      const Real half = 0.5 * cotangent(at(c), at(a), at(b));
+      weights[a][b] += half, weights[b][a] += half;
+      area[a] += std::abs(doubled_area(at(a), at(b), at(c))) / 6;
+    }
+  }
+  for (const auto& [edge, sides] : edges_of(sheet)) {
+    if (sides.opposite[1] == no_index) hem[edge[0]] = hem[edge[1]] = true;
+  }
+  for (Index i = 0; i < sheet.size(); ++i) {
+    if (hem[i] || weights[i].size() >= ring_nodes) continue;
+    BendPiece<ring_nodes> piece{.weft = 0.5 / area[i], .warp = 0.5 / area[i]};
+    piece.node.fill(i);
+    std::size_t k = 0;
+    for (const auto& [j, weight] : weights[i]) {
+      piece.node[++k] = j;
+      piece.weight[k] = weight;
+      piece.weight[0] -= weight;
+    }
+    t.ring_bend.pieces.push_back(piece);
+  }
 }
 
-void add_folds_and_springs(const Sheet& sheet, SheetTopology& t) {
+void add_mesh_springs(const Sheet& sheet, SheetTopology& t) {
   const MaterialMap at{sheet};
   for (const auto& [edge, sides] : edges_of(sheet)) {
     t.springs.pieces.push_back(make_spring(edge[0], edge[1], distance(at(edge[0]), at(edge[1])), SpringKind::structural));
     const auto [c, d] = sides.opposite;
-    if (d == no_index) continue;
-    t.cell_bend.pieces.push_back(fold_of(at, edge[0], edge[1], c, d));
-    t.springs.pieces.push_back(make_spring(c, d, distance(at(c), at(d)), SpringKind::flexion));
+    if (d != no_index) t.springs.pieces.push_back(make_spring(c, d, distance(at(c), at(d)), SpringKind::flexion));
   }
 }
 
@@ -222,13 +237,14 @@ SheetTopology make_topology(const Sheet& sheet) {
     add_grid_springs(grid, t);
   } else {
     add_triangles(sheet, t);
-    add_folds_and_springs(sheet, t);
+    add_rings(sheet, t);
+    add_mesh_springs(sheet, t);
   }
   t.shortest_edge = shortest_edge(sheet);
   const std::size_t n = sheet.size();
   colour(t.triangle_stretch, n);
   colour(t.cell_shear, n), colour(t.triangle_shear, n);
-  colour(t.cell_bend, n);
+  colour(t.cell_bend, n), colour(t.ring_bend, n);
   colour(t.springs, n);
   return t;
 }

@@ -4,10 +4,12 @@
 //
 // A grid is measured along its threads: stretch is that of the edges of whole threads, bending is the second difference
 // of three nodes along a thread. A free-form mesh is measured triangle by triangle (the deformation gradient is constant
-// there) and bends about its inner edges.
+// there) and bends at its inner nodes, by the cotangent Laplacian of the places: |Laplacian| is the curvature of bent cloth,
+// whose curvature is in one direction; its stiffness there is the mean of weft and warp. Energies of edges' folding angles
+// were tried first: what they give depends on the pattern of the mesh (3 times too much on a jittered grid).
 //
 // Sources: deformation gradient of a triangle, Baraff & Witkin, SIGGRAPH 1998, section 4; bending as a square of linear
-// forms, Bergou et al., SGP 2006, eq. 2-3 (isometric bending).
+// forms, Bergou et al., SGP 2006; cotangent Laplacian, Meyer et al., VisMath 2002, section 3.
 // Tested in tests/cloth/topology_test.cpp: energies of homogeneous strains and of a cylinder, on grids and meshes.
 #pragma once
 
@@ -45,6 +47,10 @@ struct BendPiece {
   Real weft = 0, warp = 0, twisted = 0;  // 1/m2
 };
 
+// A node and its neighbours, the rest filled up with the node itself at weight 0. A node with more neighbours carries no
+// bending.
+inline constexpr std::size_t ring_nodes = 12;
+
 // A spring between two nodes, as Provot's model has them; F as in StretchPiece, energy = k rest^2 (|F| - 1)^2 / 2.
 enum class SpringKind : std::uint8_t { structural, shear, flexion };
 struct SpringPiece {
@@ -76,7 +82,8 @@ struct SheetTopology {
   PieceList<StretchPiece<3>> triangle_stretch;  // meshes
   PieceList<ShearPiece<4>> cell_shear;          // grids
   PieceList<ShearPiece<3>> triangle_shear;      // meshes
-  PieceList<BendPiece<4>> cell_bend;            // grids: twist; meshes: inner edges
+  PieceList<BendPiece<4>> cell_bend;            // grids: twist
+  PieceList<BendPiece<ring_nodes>> ring_bend;   // meshes
   PieceList<SpringPiece> springs;               // of either kind of sheet
   Real shortest_edge = 0;                       // m, in the material
 };
