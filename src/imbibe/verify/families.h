@@ -9,5 +9,10 @@ namespace imbibe::verify {
 
 void add_capillaries(std::vector<Case>& cases);
 void add_yarn_transport(std::vector<Case>& cases);
+void add_spreading(std::vector<Case>& cases);
+void add_network(std::vector<Case>& cases);
+void add_sorption(std::vector<Case>& cases);
+void add_drying(std::vector<Case>& cases);
+void add_printed(std::vector<Case>& cases);
 
 }  // namespace imbibe::verify

@@ -8,6 +8,11 @@ const std::vector<Case>& all_cases() {
     std::vector<Case> all;
     add_capillaries(all);
     add_yarn_transport(all);
+    add_spreading(all);
+    add_network(all);
+    add_sorption(all);
+    add_drying(all);
+    add_printed(all);
     return all;
   }();
   return cases;
