@@ -77,7 +77,8 @@ Scene CaseRunner::scene(const std::string& name, const std::vector<std::string>&
 }
 
 World CaseRunner::world(const std::string& name, const std::vector<std::string>& overrides) {
-  std::string command = "imbibe run scenes/verify/" + name + ".yaml";
+  std::string command =
+      "imbibe run " + (std::filesystem::path("scenes/verify") / (name + ".yaml")).lexically_normal().string();
   for (const std::string& o : overrides) {
     command += " --set ";
     command += o.find_first_of(" [{(") == std::string::npos ? o : "'" + o + "'";
@@ -87,10 +88,7 @@ World CaseRunner::world(const std::string& name, const std::vector<std::string>&
 }
 
 void CaseRunner::run(World& world, const Scene& scene, const Observer& observe, const Observer& after_step) const {
-  RunPlan plan;
-  plan.until = scene.duration;
-  plan.every = output_interval(scene);
-  if (scene.limits.max_step) plan.step.max_step = *scene.limits.max_step;
+  const RunPlan plan = run_plan(scene);
   RunHooks hooks;
   hooks.at_output = observe;
   hooks.after_step = after_step;

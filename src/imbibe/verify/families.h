@@ -14,5 +14,6 @@ void add_network(std::vector<Case>& cases);
 void add_sorption(std::vector<Case>& cases);
 void add_drying(std::vector<Case>& cases);
 void add_printed(std::vector<Case>& cases);
+void add_coupled(std::vector<Case>& cases);
 
 }  // namespace imbibe::verify

@@ -78,7 +78,7 @@ struct Barenblatt {
 CaseResult barenblatt(CaseRunner& runner) {
   CaseResult r;
   for (const Real lambda : {5.0, 2.0}) {
-    const Real size = runner.form(20.0, 28.0), wet = runner.form(3.0, 4.0);
+    const Real size = runner.form(24.0, 30.0), wet = runner.form(3.0, 4.0);
     const std::vector<std::string> o{fmt::format("textiles[0].size=[{0} mm, {0} mm]", size),
                                      fmt::format("textiles[0].start.spots=[{{size: [{0} mm, {0} mm], yarns: 0.9}}]", wet),
                                      set("textiles[0].wetting.network.yarn_size_index", lambda), "duration=20000", "output.every=500"};
