@@ -13,6 +13,7 @@ const ORANGE = '#e69f00', SKY = '#56b4e9', GREEN = '#009e73', BLUE = '#0072b2', 
 export class Curves {
   private readonly charts: Chart[];
   private last = 0;
+  private later = 0;
 
   constructor(elements: HTMLElement[], private readonly swatches: () => Swatch[]) {
     const chart = (i: number, title: string, x: 'time' | 'root', factor: number, curves: Curve[]): Chart =>
@@ -35,7 +36,11 @@ export class Curves {
 
   // At most five times a second.
   update(now = false): void {
-    if (!now && performance.now() - this.last < 200) return;
+    window.clearTimeout(this.later);
+    if (!now && performance.now() - this.last < 200) {  // the last rows are drawn in any case
+      this.later = window.setTimeout(() => this.update(true), 250);
+      return;
+    }
     this.last = performance.now();
     for (const chart of this.charts) this.draw(chart);
   }

@@ -12,13 +12,12 @@ void main() {
   float here = texture2D(uDepth, vUv).r;
   if (here <= 0.0) { gl_FragColor = vec4(0.0); return; }
   // The filter is as wide as about two particles, whatever their distance.
-  float reach = clamp(uFilter * uFocal / here, 1.0, 14.0);
+  float reach = clamp(uFilter * uFocal / here, 1.0, 60.0), stride = max(1.0, reach / 6.0);
   float sum = here, weight = 1.0;
-  for (int i = 1; i <= 14; ++i) {
-    if (float(i) > 2.0 * reach) break;
-    float x = float(i) / reach, g = exp(-0.5 * x * x);
+  for (int i = 1; i <= 12; ++i) {
+    float x = float(i) * stride / reach, g = exp(-0.5 * x * x);
     for (int s = -1; s <= 1; s += 2) {
-      float there = texture2D(uDepth, vUv + float(s * i) * uDirection).r;
+      float there = texture2D(uDepth, vUv + float(s * i) * stride * uDirection).r;
       if (there <= 0.0) continue;
       float d = (there - here) / uRange, w = g * exp(-0.5 * d * d);
       sum += w * there; weight += w;
@@ -59,9 +58,10 @@ void main() {
       // The free surface of what lies behind bounds how far one sees through.
       vec4 q = uInverse * vec4(2.0 * vUv - 1.0, 2.0 * behind - 1.0, 1.0);
       float thick = min(texture2D(uThickness, vUv).r, max(0.0, -q.z / q.w - d) + 0.3);
-      vec2 bend = vUv - 0.035 * n.xy * clamp(thick, 0.0, 1.5);
+      // A flat bottom seen through a face tilted by n is moved by about a quarter of the depth.
+      vec2 bend = vUv - 0.25 * clamp(thick, 0.0, 3.0) * n.xy * 0.5 * vec2(uProjection[0][0], uProjection[1][1]) / d;
       vec3 seen = texture2D(uScene, bend).rgb;
-      vec3 through = seen * exp(-thick * vec3(0.34, 0.10, 0.035));
+      vec3 through = seen * exp(-thick * vec3(0.13, 0.04, 0.012));
       float facing = max(0.0, dot(n, eye));
       float fresnel = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
       vec3 mirrored = mat3(uToWorld) * reflect(-eye, n);
@@ -123,11 +123,11 @@ export class LiquidSurface {
     renderer.clear();
     renderer.render(this.particles, camera);
     const smooth = this.smooth.uniforms;
-    smooth['uFilter']!.value = 1.3 * uniforms.uRadius.value;
-    smooth['uRange']!.value = 1.6 * uniforms.uRadius.value;
+    smooth['uFilter']!.value = 1.1 * uniforms.uRadius.value;
+    smooth['uRange']!.value = 2.2 * uniforms.uRadius.value;
     smooth['uFocal']!.value = 0.5 * height * camera.projectionMatrix.elements[5]!;
     this.quad.material = this.smooth;
-    for (let pass = 0; pass < 4; ++pass) {
+    for (let pass = 0; pass < 6; ++pass) {
       smooth['uDepth']!.value = this.depths[pass % 2]!.texture;
       (smooth['uDirection']!.value as THREE.Vector2).set(pass % 2 ? 0 : 1 / width, pass % 2 ? 1 / height : 0);
       renderer.setRenderTarget(this.depths[(pass + 1) % 2]!);
@@ -139,7 +139,7 @@ export class LiquidSurface {
     renderer.setScissor(area);
     renderer.setScissorTest(true);
     const c = this.compose.uniforms;
-    c['uDepth']!.value = this.depths[0].texture;
+    c['uDepth']!.value = this.depths[0].texture;  // an even number of passes ends there
     (c['uTexel']!.value as THREE.Vector2).set(1 / width, 1 / height);
     (c['uProjection']!.value as THREE.Matrix4).copy(camera.projectionMatrix);
     (c['uInverse']!.value as THREE.Matrix4).copy(camera.projectionMatrixInverse);

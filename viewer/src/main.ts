@@ -193,8 +193,7 @@ function showStatus(): void {
   const status = byId('status');
   if (status.innerHTML !== html) status.innerHTML = html;
   if (flags & Flag.replay) {
-    const bar = byId<HTMLInputElement>('drop-volume').onkeydown = (e) => { if (e.key === 'Enter' || e.key === 'Escape') (e.target as HTMLElement).blur(); };
-byId('seek').querySelector('input')!;
+    const bar = byId('seek').querySelector('input')!;
     bar.max = String(s.message?.duration ?? 1);
     if (document.activeElement !== bar || !bar.matches(':active')) bar.value = String(time);
   }
@@ -332,6 +331,7 @@ byId<HTMLInputElement>('section-place').oninput = (e) => view.setSection(Number(
 byId<HTMLInputElement>('filter').oninput = (e) => { panel.filter = (e.target as HTMLInputElement).value; panel.changed(); };
 byId<HTMLInputElement>('show-all').onchange = (e) => { panel.all = (e.target as HTMLInputElement).checked; panel.changed(); };
 byId<HTMLSelectElement>('swatch').onchange = (e) => { target = Number((e.target as HTMLSelectElement).value); showPanel(); };
+byId<HTMLInputElement>('drop-volume').onkeydown = (e) => { if (e.key === 'Enter' || e.key === 'Escape') (e.target as HTMLElement).blur(); };
 byId('seek').querySelector('input')!.oninput = (e) => connection.send({ type: 'seek', time: Number((e.target as HTMLInputElement).value) });
 
 // ---- files dropped on the page

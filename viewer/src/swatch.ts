@@ -20,11 +20,11 @@ export class Swatch {
   frameBytes = 0;
   readonly bounds = new THREE.Box3();
   private readonly things = new THREE.Group();
-  private readonly sun = new THREE.DirectionalLight(0xfff4e5, 2.6);
+  private readonly sun = new THREE.DirectionalLight(0xffffff, 2.5);
 
   constructor(hello: HelloMessage, private readonly look: YarnLook) {
     this.series = new Series(hello.columns);
-    this.scene.add(this.things, new THREE.HemisphereLight(0xf2f6ff, 0x8d8478, 1.25), this.sun, this.sun.target);
+    this.scene.add(this.things, new THREE.HemisphereLight(0xffffff, 0x9a9a9c, 1.5), this.sun, this.sun.target);
     const fill = new THREE.DirectionalLight(0xdbe8ff, 0.5);
     fill.position.set(-1, 0.6, 0.5);
     this.scene.add(fill);

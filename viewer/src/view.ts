@@ -78,7 +78,7 @@ export class View {
     // The box as seen from there, in both directions of the picture.
     const right = new THREE.Vector3().crossVectors(this.camera.up, from).normalize(), up = new THREE.Vector3().crossVectors(from, right);
     const extent = (v: THREE.Vector3) => 0.5 * (Math.abs(v.x) * size.x + Math.abs(v.y) * size.y + Math.abs(v.z) * size.z);
-    const distance = Math.max(extent(right) / (half * aspect), extent(up) / half) * 1.12 + extent(from);
+    const distance = Math.max(extent(right) / (half * aspect), extent(up) / half) * 1.04 + 0.55 * extent(from);
     this.orbit.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(from, distance);
     this.camera.near = distance / 200;

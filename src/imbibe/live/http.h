@@ -3,7 +3,7 @@
 //
 // Who may ask: `Host` must be a name of this server (so that a foreign page cannot reach it by rebinding its own name);
 // an `Origin`, when given, must be that same host; with a token, the WebSocket needs ?token=.
-// Tested in tests/live/http_test.cpp.
+// Tested in tests/live/wire_test.cpp.
 #pragma once
 
 #include <map>

@@ -25,7 +25,7 @@
 // A frame without section 1 leaves the particles as they are; with it and no items there are none.
 //
 // Page to server: JSON text, at most longest_message bytes, with a "type". parse_message() takes anything and throws
-// nothing. Tested in tests/live/protocol_test.cpp; fuzzed by tests/live/message_fuzz_test.cpp.
+// nothing. Tested and fuzzed in tests/live/wire_test.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // A finished (or still growing) run on the page: frames from the files in its folder (view/run_frames.h), curves from
 // series.csv. Plays at the wanted speed, pauses, and goes to any time.
-// Tested in tests/live/replay_test.cpp.
+// Tested with the page, in viewer/test/live.test.mjs.
 #pragma once
 
 #include <chrono>

@@ -4,7 +4,7 @@
 // latest snapshot. Frames are encoded against what that viewer has seen (protocol.h).
 // Limits: connections, request size and time, message size, messages per second (a viewer that sends faster is read
 // slower), bytes waiting to be sent. Malformed messages are answered and counted.
-// Tested in tests/live/server_test.cpp and, in a browser, by viewer/test.
+// Tested with the page, in viewer/test/live.test.mjs.
 #pragma once
 
 #include <atomic>

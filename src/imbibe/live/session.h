@@ -1,7 +1,7 @@
 // A simulation with viewers: steps a World by sim/run.h in a thread of its own, takes commands between steps, logs every
 // change (scene/live_change.h), and publishes snapshots at the viewers' rate. The run itself is that of `imbibe run`:
 // same step sizes, same output times, so that the log reruns it bit for bit.
-// Tested in tests/live/session_test.cpp.
+// Tested with the page, in viewer/test/live.test.mjs.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // The server's side of the WebSocket protocol (RFC 6455) as pure functions over bytes: handshake key, frames.
 // No extensions; messages may come in fragments; every length is checked against the limit before anything is stored.
-// Tested in tests/live/websocket_test.cpp.
+// Tested in tests/live/wire_test.cpp.
 #pragma once
 
 #include <array>
