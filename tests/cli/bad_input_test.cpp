@@ -197,4 +197,13 @@ TEST_F(BadInput, FilesThatAreNoScenesAreRefusedWhateverTheyHold) {
     EXPECT_EQ(run_command(std::string("check ") + device, "ulimit -v 4000000;").code, 2) << device;
 }
 
+TEST_F(BadInput, FilesWithoutAnEndAreRefusedByTheirSize) {
+  const std::string scene = write("endless.yaml", std::string(scene_text) + "solids:\n  - {shape: {kind: mesh, file: /dev/zero}}\n");
+  for (const std::string& arguments : {std::string("check ") + scene, std::string("check /dev/zero"),
+                                       std::string("fabric /dev/zero")}) {
+    const Outcome outcome = run_command(arguments, "ulimit -v 4000000;");  // kB: reading on would end in std::bad_alloc
+    EXPECT_EQ(outcome.code, 2) << arguments << outcome.output;
+  }
+}
+
 }  // namespace

@@ -83,6 +83,7 @@ TEST(Quantity, ShownValuesReadBackAsTheyWere) {
 
 TEST(Quantity, ThatIsTooLargeOnceConvertedOrHasAnEndlessUnitIsRefused) {
   EXPECT_THROW(parse_quantity("1e308 km", "m"), QuantityError);
+  EXPECT_THROW(parse_quantity("3e-320 Ne", "kg/m"), QuantityError);
   EXPECT_THROW(parse_quantity("1 " + std::string(100000, '('), "m"), QuantityError);
 }
 

@@ -140,7 +140,7 @@ void write_whole_file(const std::filesystem::path& path, std::string_view text) 
   file.commit();
 }
 
-std::string read_whole_file(const std::filesystem::path& path) {
+std::string read_whole_file(const std::filesystem::path& path, std::size_t most_bytes) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) throw InputError("cannot read " + path.string() + ": " + std::strerror(errno));
   std::string text;
@@ -148,6 +148,11 @@ std::string read_whole_file(const std::filesystem::path& path) {
   ssize_t got = 0;
   while ((got = ::read(file, piece, sizeof piece)) > 0 || (got < 0 && errno == EINTR)) {
     if (got > 0) text.append(piece, static_cast<std::size_t>(got));
+    if (text.size() > most_bytes) {
+      ::close(file);
+      throw InputError(std::vector{Problem{path.string(), 0, 0, "", "is larger than " + std::to_string(most_bytes >> 20) +
+                                                                        " MiB, the most that is read"}});
+    }
   }
   const int number = errno;
   ::close(file);

@@ -65,7 +65,7 @@ class AppendFile {
 
 // The whole of a small text file in one go.
 void write_whole_file(const std::filesystem::path& path, std::string_view text);
-// Throws InputError when it cannot be read.
-std::string read_whole_file(const std::filesystem::path& path);
+// Throws InputError when it cannot be read, or holds more than `most_bytes`: also of what never ends, as a device may.
+std::string read_whole_file(const std::filesystem::path& path, std::size_t most_bytes = static_cast<std::size_t>(-1));
 
 }  // namespace imbibe

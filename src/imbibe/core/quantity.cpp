@@ -87,12 +87,14 @@ Real parse_quantity(std::string_view text, std::string_view si_unit) {
     throw QuantityError(fmt::format("'{}' needs a unit ({})", all, si_unit == "K" ? "degC or K" : "deg or rad"));
   if (unit.empty()) return value;
   if (unit.size() > longest_unit) throw QuantityError(fmt::format("a unit of {} letters is not known", unit.size()));
+  Real si = 0;
   if (unit == "Ne") {  // indirect system: hanks of 840 yards in a pound; 590.5 tex at Ne 1
     if (si_unit != "kg/m") throw QuantityError(fmt::format("'Ne' is not convertible to {}", si_unit));
     if (value <= 0) throw QuantityError("a yarn count in Ne must be above 0");
-    return 0.45359237 / (840 * 0.9144) / value;
+    si = 0.45359237 / (840 * 0.9144) / value;
+  } else {
+    si = converted(unit, std::string(si_unit), value);
   }
-  const Real si = converted(unit, std::string(si_unit), value);
   if (!std::isfinite(si)) throw QuantityError(fmt::format("'{}' is too large a number", all));
   return si;
 }

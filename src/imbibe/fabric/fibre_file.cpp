@@ -9,6 +9,7 @@
 #include <set>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/output_file.h"
 #include "imbibe/core/quantity.h"
 
 namespace imbibe {
@@ -16,6 +17,8 @@ namespace {
 
 // UDUNITS knows whole powers only; the absorption coefficient is read by its exact name.
 constexpr std::string_view root_second_unit = "kg/(m2 s^0.5)";
+
+constexpr std::size_t most_bytes = std::size_t{1} << 20;  // shipped files have 3 kB
 
 struct Key {
   const char* name;
@@ -52,9 +55,8 @@ class FibreReader {
   FibreRecord read() {
     YAML::Node root;
     try {
-      root = YAML::LoadFile(file_);
-    } catch (const YAML::BadFile&) {
-      throw InputError(std::vector{Problem{file_, 0, 0, "", "cannot be opened"}});
+      if (!std::ifstream(file_)) throw InputError(std::vector{Problem{file_, 0, 0, "", "cannot be opened"}});
+      root = YAML::Load(read_whole_file(file_, most_bytes));
     } catch (const YAML::Exception& e) {
       throw InputError(std::vector{Problem{file_, e.mark.line + 1, e.mark.column + 1, "", "is not YAML: " + e.msg}});
     }

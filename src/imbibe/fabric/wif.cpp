@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/output_file.h"
 #include "imbibe/core/portable.h"
 #include "imbibe/fabric/wif_sections.h"
 
@@ -242,16 +243,9 @@ WifFile parse_wif(std::string_view text, const std::string& file) {
 }
 
 WifFile read_wif(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
+  if (!std::ifstream(file) || std::filesystem::is_directory(file))
     throw InputError(std::vector{Problem{file.string(), 0, 0, "", "cannot be opened"}});
-  std::error_code code;
-  if (const auto bytes = std::filesystem::file_size(file, code); !code && bytes > largest_wif_bytes)
-    throw InputError(std::vector{Problem{file.string(), 0, 0, "", fmt::format("has {} bytes; a WIF file of more than {} is refused",
-                                                                              bytes, largest_wif_bytes)}});
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse_wif(text.str(), file.string());
+  return parse_wif(read_whole_file(file, largest_wif_bytes), file.string());
 }
 
 }  // namespace imbibe

@@ -9,8 +9,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <system_error>
+
+#include "imbibe/core/output_file.h"
 
 namespace imbibe {
 
@@ -18,6 +19,7 @@ static_assert(std::endian::native == std::endian::little, "binary mesh files are
 
 namespace {
 
+constexpr std::size_t most_bytes = std::size_t{1} << 30;  // of a file: some 20 million triangles
 constexpr std::size_t most_corners = 1024;  // of one polygon; more is a damaged file
 
 [[noreturn]] void fail(const std::string& name, int line, std::string message) {
@@ -366,11 +368,8 @@ Index obj_corner(const Lines& lines, std::string_view word, std::size_t vertices
 }
 
 std::string read_whole(const std::string& path) {
-  std::error_code code;  // opening a folder succeeds, reading it does not
-  if (std::ifstream file(path, std::ios::binary); file && !std::filesystem::is_directory(path, code)) {
-    std::string content(std::istreambuf_iterator<char>(file), {});
-    if (!file.bad()) return content;
-  }
+  std::error_code code;  // neither a folder nor a device, which may have no end
+  if (std::ifstream(path) && std::filesystem::is_regular_file(path, code)) return read_whole_file(path, most_bytes);
   fail(path, 0, "cannot be read: is it there, and a file?");
 }
 
