@@ -177,7 +177,7 @@ void find_contacts(Step& s, Real h) {
   self.hits.clear();
   s.report.self_contacts = 0;
   if (!s.params.contact.self) return;
-  reserve_near_pairs(s.sheet, s.params.hand.thickness, greatest_motion(s.sheet, h), self);
+  reserve_near_pairs(s.sheet, s.params.hand.thickness, h, self);
   find_near_pairs(self_rules(s), s.nodes(), h, self);
   s.report.self_contacts = self.touching;
 }
@@ -185,12 +185,12 @@ void find_contacts(Step& s, Real h) {
 void prevent_self_crossings(Step& s, Real h) {
   if (!s.params.contact.self) return;
   SelfContact& self = s.work.self;
-  reserve_near_pairs(s.sheet, s.params.hand.thickness, greatest_motion(s.sheet, h), self);
+  reserve_near_pairs(s.sheet, s.params.hand.thickness, h, self);
   const SweptReport swept = prevent_crossings(s.sheet, s.nodes(), h, self);
   s.report.swept_hits += swept.hits;
   s.report.rigid_zones += swept.zones;
   s.report.unresolved_crossings += swept.unresolved;
-  self.used += greatest_motion(s.sheet, h);
+  note_motion(s.sheet, h, self);
 }
 
 struct SubstepErrors {
@@ -296,7 +296,7 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
   work.prepare(sheet, params);
   if (params.air.density > 0) work.update_normals(sheet);
   work.clearance.assign(sheet.size() * loads.solids.size(), 0);
-  if (work.self.position != sheet.position) work.self.reserve = 0;
+  if (work.self.position != sheet.position) work.self.room.clear();
   if (sheet.substep == 0) sheet.substep = first_substep(s);
   report.substep = dt;
   while (s.elapsed < dt) {

@@ -10,6 +10,7 @@ namespace imbibe {
 namespace {
 
 constexpr std::size_t triangle_tile = 1024, node_tile = 4096;
+constexpr Real slow_room = 0.2;  // of the shortest edge
 
 bool shares_node(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
   for (const Index i : a) {
@@ -36,14 +37,17 @@ struct Grid {
   }
 };
 
-Bounds box_of(const Sheet& sheet, std::size_t triangle) {
+// Where a triangle can come, and half the thickness around it.
+Bounds box_of(const Sheet& sheet, std::size_t triangle, Real thickness, const std::vector<Real>& room) {
   Bounds box;
-  for (const Index i : sheet.triangles[triangle]) box.include(sheet.position[i]);
+  Real most = 0;
+  for (const Index i : sheet.triangles[triangle]) box.include(sheet.position[i]), most = std::max(most, room[i]);
+  box.grow(most + 0.5 * thickness);
   return box;
 }
 
-// Cells as large as the largest box with the reach, so that boxes that overlap lie in neighbouring cells.
-Grid make_grid(const Sheet& sheet, Real reach, SelfContact& c) {
+// Cells as large as the largest box, so that boxes that overlap lie in neighbouring cells.
+Grid make_grid(const Sheet& sheet, Real thickness, SelfContact& c) {
   const std::size_t n = sheet.triangles.size();
   struct Extent {
     Bounds all{};
@@ -54,10 +58,10 @@ Grid make_grid(const Sheet& sheet, Real reach, SelfContact& c) {
   const Extent extent = parallel_sum(n, [&](std::size_t begin, std::size_t end) {
     Extent e;
     for (std::size_t k = begin; k < end; ++k) {
-      const Bounds box = c.box[k] = box_of(sheet, k);
+      const Bounds box = c.box[k] = box_of(sheet, k, thickness, c.room);
       const Vec3 size = box.size();
       e.all.include(box);
-      e.size = std::max({e.size, size.x + reach, size.y + reach, size.z + reach});
+      e.size = std::max({e.size, size.x, size.y, size.z});
       const auto& t = sheet.triangles[k];
       c.normal[k] = normalized(cross(sheet.position[t[1]] - sheet.position[t[0]],
                                      sheet.position[t[2]] - sheet.position[t[0]]));
@@ -86,7 +90,7 @@ void fill_grid(const Grid& grid, SelfContact& c) {
 struct Search {
   const Sheet& sheet;
   const SelfContact& contact;
-  Real thickness, reach;  // reach: pairs nearer than this are listed
+  Real thickness;
   std::vector<ClosePair>& found;
 
   std::array<Vec3, 4> places(const std::array<Index, 4>& node) const {
@@ -108,7 +112,13 @@ struct Search {
     const std::array<Vec3, 4> x = places(node);
     const std::size_t firsts = kind == PairKind::node_triangle ? 1 : 2;
     Bounds a, b;
-    for (std::size_t k = 0; k < 4; ++k) (k < firsts ? a : b).include(x[k]);
+    Real room_a = 0, room_b = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      (k < firsts ? a : b).include(x[k]);
+      Real& room = k < firsts ? room_a : room_b;
+      room = std::max(room, contact.room[node[k]]);
+    }
+    const Real reach = thickness + room_a + room_b;  // pairs nearer than this are listed
     a.grow(reach);
     if (!a.overlaps(b) || !(gap_of(kind, x).distance < reach)) return;
     found.push_back({node, kind, kept(node, kind)});
@@ -119,9 +129,19 @@ struct Search {
       if (i != no_index && i != t[0] && i != t[1] && i != t[2]) consider({i, t[0], t[1], t[2]}, PairKind::node_triangle);
     }
   }
+  bool is_slow(std::size_t triangle) const {
+    for (const Index i : sheet.triangles[triangle]) {
+      if (contact.room[i] > slow_room * contact.owners.shortest_edge) return false;
+    }
+    return true;
+  }
   void visit(std::size_t ta, std::size_t tb) {
-    // Neighbours at a corner that are nearly flat: no pieces of theirs can meet before the reserve is used up.
-    if (shares_node(sheet.triangles[ta], sheet.triangles[tb]) && dot(contact.normal[ta], contact.normal[tb]) > 0.5) return;
+    // Neighbours at a corner that are nearly flat: no pieces of theirs can meet before they have turned, which
+    // takes more than the room of slow nodes; fast ones are looked at.
+    if (shares_node(sheet.triangles[ta], sheet.triangles[tb]) && dot(contact.normal[ta], contact.normal[tb]) > 0.5 &&
+        is_slow(ta) && is_slow(tb)) {
+      return;
+    }
     nodes_of(ta, tb);
     nodes_of(tb, ta);
     for (const Index e : contact.owners.of_triangle[ta].edge) {
@@ -136,12 +156,11 @@ struct Search {
   }
 };
 
-// Triangles of higher number whose boxes come within reach, rising: the order of the list does not depend on the grid, so
+// Triangles of higher number whose boxes overlap, rising: the order of the list does not depend on the grid, so
 // it does not matter to the bits when the list was made.
-void neighbours_of(std::size_t k, const Grid& grid, const SelfContact& c, Real reach, std::vector<Index>& others) {
+void neighbours_of(std::size_t k, const Grid& grid, const SelfContact& c, std::vector<Index>& others) {
   others.clear();
-  Bounds box = c.box[k];
-  box.grow(reach);
+  const Bounds& box = c.box[k];
   const auto cell = c.cell[k];
   for (std::int32_t dz = -1; dz <= 1; ++dz) {
     for (std::int32_t dy = -1; dy <= 1; ++dy) {
@@ -182,45 +201,60 @@ SelfOwners make_owners(const Sheet& sheet) {
   return owners;
 }
 
-void list_near_pairs(const Sheet& sheet, Real thickness, Real reserve, SelfContact& c) {
-  const Real reach = thickness + 2 * reserve;
-  const Grid grid = make_grid(sheet, reach, c);
+void list_near_pairs(const Sheet& sheet, Real thickness, SelfContact& c) {
+  const Grid grid = make_grid(sheet, thickness, c);
   fill_grid(grid, c);
   const std::size_t n = sheet.triangles.size(), tiles = (n + triangle_tile - 1) / triangle_tile;
   c.tile_pairs.resize(tiles);
   parallel_tiles(n, [&](std::size_t begin, std::size_t end) {
     auto& found = c.tile_pairs[begin / triangle_tile];
     found.clear();
-    Search search{sheet, c, thickness, reach, found};
+    Search search{sheet, c, thickness, found};
     std::vector<Index> others;
     for (std::size_t k = begin; k < end; ++k) {
-      neighbours_of(k, grid, c, reach, others);
+      neighbours_of(k, grid, c, others);
       for (const Index other : others) search.visit(k, other);
     }
   }, triangle_tile);
   c.pairs.clear();
   for (const auto& found : c.tile_pairs) c.pairs.insert(c.pairs.end(), found.begin(), found.end());
-  c.reserve = reserve;
   c.thickness = thickness;
-  c.used = 0;
+  c.moved.assign(sheet.size(), 0);
 }
 
-Real greatest_motion(const Sheet& sheet, Real h) {
-  const Vec3 mean = parallel_sum(sheet.size(), [&](std::size_t begin, std::size_t end) {
+namespace {
+
+Vec3 mean_velocity(const Sheet& sheet) {
+  return parallel_sum(sheet.size(), [&](std::size_t begin, std::size_t end) {
     Vec3 sum;
     for (std::size_t i = begin; i < end; ++i) sum += sheet.velocity[i];
     return sum;
   }, node_tile) / static_cast<Real>(sheet.size());
-  return h * std::sqrt(parallel_max(sheet.size(), Real{0}, [&](std::size_t begin, std::size_t end) {
-    Real most = 0;
-    for (std::size_t i = begin; i < end; ++i) most = std::max(most, squared_norm(sheet.velocity[i] - mean));
-    return most;
-  }, node_tile));
 }
 
-void reserve_near_pairs(const Sheet& sheet, Real thickness, Real motion, SelfContact& c) {
-  if (c.reserve > 0 && c.thickness == thickness && c.used + motion <= c.reserve) return;
-  list_near_pairs(sheet, thickness, std::max(0.2 * c.owners.shortest_edge, 2 * motion), c);
+}  // namespace
+
+void reserve_near_pairs(const Sheet& sheet, Real thickness, Real h, SelfContact& c) {
+  const Vec3 mean = mean_velocity(sheet);
+  const auto motion = [&](std::size_t i) { return h * norm(sheet.velocity[i] - mean); };
+  if (c.room.size() == sheet.size() && c.thickness == thickness) {
+    const Real beyond = parallel_max(sheet.size(), Real{-1}, [&](std::size_t begin, std::size_t end) {
+      Real most = -1;
+      for (std::size_t i = begin; i < end; ++i) most = std::max(most, c.moved[i] + motion(i) - c.room[i]);
+      return most;
+    }, node_tile);
+    if (beyond <= 0) return;
+  }
+  c.room.resize(sheet.size());
+  for (std::size_t i = 0; i < sheet.size(); ++i) {
+    c.room[i] = std::max(slow_room * c.owners.shortest_edge, 2 * motion(i));
+  }
+  list_near_pairs(sheet, thickness, c);
+}
+
+void note_motion(const Sheet& sheet, Real h, SelfContact& c) {
+  const Vec3 mean = mean_velocity(sheet);
+  parallel_for(sheet.size(), [&](std::size_t i) { c.moved[i] += h * norm(sheet.velocity[i] - mean); }, node_tile);
 }
 
 }  // namespace imbibe

@@ -1,7 +1,7 @@
 // A sheet against itself.
 //
-// 1. Near pairs (close_pair.h) are listed from a grid of triangle boxes, with a reserve: the list holds while no node has
-//    moved, relative to the sheet's mean motion, further than half the reserve.
+// 1. Near pairs (close_pair.h) are listed from a grid of triangle boxes, with room for each node to move: the list holds
+//    while no node has moved, relative to the sheet's mean motion, further than its room.
 // 2. Repulsion: pairs nearer than the cloth's thickness do not come nearer, those farther not nearer than it; impulses
 //    along the gap, Coulomb friction across it, and the pull of liquid bridges (Sheet::cling) against parting.
 // 3. Swept: the substep's motion of every near pair is tested; what would meet is stopped by further impulses, and what
@@ -38,8 +38,8 @@ SelfOwners make_owners(const Sheet& sheet);
 struct SelfContact {
   SelfOwners owners;
   std::vector<ClosePair> pairs;
-  Real reserve = 0;  // m each node may move before the list is made anew
-  Real used = 0;     // m moved since
+  std::vector<Real> room;  // m each node may move before the list is made anew; empty: there is no list
+  std::vector<Real> moved; // m since
   Real thickness = 0;  // m, for which it was made
 
   std::size_t touching = 0;  // pairs of `hits` nearer than their thickness
@@ -63,14 +63,13 @@ struct SelfContactRules {
   const Real* area = nullptr;   // m2 per node
 };
 
-// Pairs that may come nearer than the thickness while no node moves further than `reserve`.
-void list_near_pairs(const Sheet& sheet, Real thickness, Real reserve, SelfContact& contact);
+// Pairs that may come nearer than the thickness while no node moves further than contact.room.
+void list_near_pairs(const Sheet& sheet, Real thickness, SelfContact& contact);
 
-// Greatest displacement of a node in h at the velocities as they are, relative to the mean motion.
-Real greatest_motion(const Sheet& sheet, Real h);
-
-// Makes the list anew if `motion` more would leave its reserve (a reserve of 0: there is no list yet).
-void reserve_near_pairs(const Sheet& sheet, Real thickness, Real motion, SelfContact& contact);
+// Makes the list anew if a node would leave its room in h at the velocities as they are.
+void reserve_near_pairs(const Sheet& sheet, Real thickness, Real h, SelfContact& contact);
+// Books the motion of a substep.
+void note_motion(const Sheet& sheet, Real h, SelfContact& contact);
 
 // Lists in `hits` the pairs that may come nearer than their thickness in h, with their gaps.
 void find_near_pairs(const SelfContactRules& rules, const NodeMotion& nodes, Real h, SelfContact& contact);
