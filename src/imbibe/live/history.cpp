@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace imbibe::live {
 
@@ -16,7 +17,7 @@ void History::add(const std::vector<double>& row) {
   rows_.push_back(row);
   if (rows_.size() < most_) return;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < rows_.size(); i += 2) rows_[kept++] = std::move(rows_[i]);
+  for (std::size_t i = 0; i < rows_.size(); i += 2) std::swap(rows_[kept++], rows_[i]);
   rows_.resize(kept);
   stride_ *= 2;
 }
