@@ -161,8 +161,8 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
 
   Real viscosity = kind.viscosity;
   if (tension) {
-    viscosity +=
-        kind.density * numerical_viscosity(params.surface, kind.surface_tension, kind.density, liquid.spacing());
+    viscosity = std::max(viscosity, kind.density * least_viscosity(params.surface, kind.surface_tension, kind.density,
+                                                                   liquid.spacing()));
   }
   const ViscosityReport viscous = apply_viscosity(f, params.viscosity, viscosity, dt, report.wall_impulse);
   report.viscosity_iterations = viscous.iterations;

@@ -341,7 +341,7 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
   return report;
 }
 
-Real numerical_viscosity(const SurfaceParams& params, Real surface_tension, Real density, Real spacing) {
+Real least_viscosity(const SurfaceParams& params, Real surface_tension, Real density, Real spacing) {
   return params.numerical_viscosity * std::sqrt(surface_tension * spacing / density);
 }
 

@@ -35,7 +35,7 @@ namespace imbibe {
 
 struct SurfaceParams {
   Real offset = 0.5;              // dx
-  Real numerical_viscosity = 0.1;  // of sqrt(gamma dx/rho), added to the liquid's: see numerical_viscosity()
+  Real numerical_viscosity = 0.1;  // of sqrt(gamma dx/rho), the least kinematic viscosity: see least_viscosity()
   Real damping = 1;               // strength of the grid-scale filter per shortest capillary time (damping.h)
   ContactAngleParams contact;
 };
@@ -44,7 +44,7 @@ template <class V>
 void describe(V& v, SurfaceParams& p) {
   v.value("offset", p.offset, {.min = 0, .max = 1, .help = "depth of the outermost particles under the surface, in spacings"});
   v.value("numerical_viscosity", p.numerical_viscosity,
-          {.min = 0, .max = 2, .help = "viscosity added for stability, of sqrt(surface tension x spacing / density)"});
+          {.min = 0, .max = 2, .help = "least viscosity, for stability, of sqrt(surface tension x spacing / density)"});
   v.value("damping", p.damping,
           {.min = 0, .max = 1, .help = "filter of motions as small as the spacing, per shortest capillary time"});
   v.group("contact", p.contact, "contact line");
@@ -76,8 +76,9 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
                               std::span<const Wall> walls, Real dt, SurfaceScratch& scratch,
                               std::vector<ParticleClass>& kinds, std::vector<Vec3>& impulse);
 
-// m2/s, kinematic. Motions of a few spacings would otherwise gain energy from the curvature's error; scales with
-// dx^(1/2), is about 9 times water's viscosity at dx = 0.12 mm.
-Real numerical_viscosity(const SurfaceParams& params, Real surface_tension, Real density, Real spacing);
+// m2/s, kinematic: less is raised to it, a thicker liquid keeps its own (so oils damp as they should). Motions of a few
+// spacings would otherwise gain energy from the curvature's error. Scales with dx^(1/2): about 9 times water's at
+// dx = 0.12 mm.
+Real least_viscosity(const SurfaceParams& params, Real surface_tension, Real density, Real spacing);
 
 }  // namespace imbibe
