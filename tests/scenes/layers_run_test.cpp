@@ -6,8 +6,14 @@
 namespace imbibe {
 namespace {
 
+// The stack is centred at z = 0, so each further layer lifts its face by half a layer (0.34 mm thick): the drop too.
+Real lift(int layers) { return 0.18e-3 * (layers - 1); }
+
 World drop_on_layers(std::vector<LayerSpec> layers) {
   Scene scene = test::small_drop();
+  int count = 0;
+  for (const LayerSpec& layer : layers) count += layer.count;
+  scene.liquid.drops[0].centre.z += lift(count);
   scene.textiles[0].fabric.layers = std::move(layers);
   return test::build(scene, test::scenes_folder() / "small_drop.yaml");
 }
@@ -49,7 +55,7 @@ TEST(Layers, BelowARejectingLayerTheClothStaysDry) {
 TEST(Layers, UnderneathLiquidTouchesTheLowestLayer) {
   Scene scene = test::small_drop();
   scene.textiles[0].fabric.layers = {{.count = 2, .fibre = ""}};
-  scene.liquid.drops[0].centre.z *= -1;
+  scene.liquid.drops[0].centre.z = -(scene.liquid.drops[0].centre.z + lift(2));
   scene.liquid.drops[0].velocity.z = 0.3;
   scene.gravity = {0, 0, 0};
   World world = test::build(scene, test::scenes_folder() / "small_drop.yaml");
