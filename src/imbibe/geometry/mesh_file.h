@@ -19,6 +19,15 @@ TriangleMesh parse_obj(std::string_view content, const std::string& name);
 TriangleMesh parse_ply(std::string_view content, const std::string& name);
 TriangleMesh parse_stl(std::string_view content, const std::string& name);
 
+// A mesh with one texture coordinate per vertex, for a sheet: OBJ only. A mesh without vt, or with a vertex that has two
+// of them (a seam), is an InputError.
+struct UvMesh {
+  TriangleMesh mesh;
+  std::vector<std::array<double, 2>> uv;
+};
+UvMesh read_uv_mesh(const std::string& path);
+UvMesh parse_uv_obj(std::string_view content, const std::string& name);
+
 // Chooses the format by the ending: .obj, .ply (binary), .stl (binary). Throws InputError when it cannot be written.
 void write_mesh(const TriangleMesh& mesh, const std::string& path);
 

@@ -86,4 +86,24 @@ PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturat
   return data;
 }
 
+PolyData cell_cloth_poly_data(const CellCloth& cloth) {
+  const Sheet& sheet = cloth.soft.sheet;
+  PolyData data;
+  std::vector<float> velocity, uv, water;
+  for (std::size_t n = 0; n < sheet.size(); ++n) {
+    data.points.push_back(Vec3f(sheet.position[n]));
+    const Vec3f v(sheet.velocity[n]);
+    velocity.insert(velocity.end(), {v.x, v.y, v.z});
+    uv.insert(uv.end(), {static_cast<float>(sheet.u[n]), static_cast<float>(sheet.v[n])});
+    water.push_back(static_cast<float>(sheet.added_mass[n]));
+  }
+  for (const auto& t : sheet.triangles)
+    data.triangles.push_back({static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]), static_cast<std::int32_t>(t[2])});
+  data.add("saturation", node_saturation(cloth));
+  data.add("cell_kg", std::move(water));
+  data.add("velocity", std::move(velocity), 3);
+  data.add("uv", std::move(uv), 2);
+  return data;
+}
+
 }  // namespace imbibe

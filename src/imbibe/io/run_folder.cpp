@@ -110,6 +110,7 @@ std::vector<std::string> collection_stems(const World& world) {
   };
   add("liquid");
   for (const Textile& textile : world.textiles) add(add("textile_" + file_name_part(textile.name)) + "_pores");
+  for (const CellCloth& cloth : world.cell_cloths) add("textile_" + file_name_part(cloth.name));
   return taken;
 }
 
@@ -256,6 +257,8 @@ bool RunFolder::write_output(const World& world, const StepReport& last_step) {
       write_frame(collections_[1 + 2 * i], textile_poly_data(world.textiles[i], saturations), world);
       write_frame(collections_[2 + 2 * i], pore_poly_data(world.textiles[i], saturations), world);
     }
+    for (std::size_t i = 0; i < world.cell_cloths.size(); ++i)
+      write_frame(collections_[1 + 2 * world.textiles.size() + i], cell_cloth_poly_data(world.cell_cloths[i]), world);
   }
   series_.write(series_row(world, last_step, setup_.measures));
   ++outputs_;

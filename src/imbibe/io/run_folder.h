@@ -113,6 +113,8 @@ PolyData liquid_poly_data(const Liquid& liquid);
 // `saturations`: node_saturations(). Every point of a yarn's line carries the values of the segment it lies on.
 PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& saturations);
 PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturations);
+// The moving sheet of a cell cloth as triangles: saturation, cell_kg, velocity, uv (material coordinates, m).
+PolyData cell_cloth_poly_data(const CellCloth& cloth);
 
 // The names of the collections of .vtp files before "_000000.vtp" and ".pvd": liquid, then yarns and pores of every
 // textile. Names of textiles may differ only in what a file name cannot carry; these differ always.

@@ -37,6 +37,23 @@ SeriesRow series_row(const World& world, const StepReport& last_step, const Meas
     row.bounces += exchange.bounces;
     for (const Real kg : exchange.waiting_kg) row.waiting_kg += kg;
   }
+  if (!world.cell_cloths.empty()) row.lowest_cloth_m = unlimited;
+  for (const CellCloth& cloth : world.cell_cloths) {
+    const CellClothMeasures m = measure(cloth, params);
+    row.wet_area_m2 += m.wet_area;
+    row.wet_extent_warp_m = std::max(row.wet_extent_warp_m, m.extent_warp);
+    row.wet_extent_weft_m = std::max(row.wet_extent_weft_m, m.extent_weft);
+    row.max_saturation = std::max(row.max_saturation, m.max_saturation);
+    row.contacts += cloth.crossings;
+    row.absorbed_particles += cloth.absorbed_particles;
+    row.released_particles += cloth.released_particles;
+    row.bounces += cloth.bounces;
+    row.waiting_kg += waiting_kg(cloth);
+    row.lowest_cloth_m = std::min(row.lowest_cloth_m, m.lowest);
+    // Cells hold liquid over their area as yarns over their volume: the mean is over both by what they can hold.
+    yarn_volume += m.capacity_volume;
+    weighted_saturation += m.capacity_volume * m.mean_saturation;
+  }
   for (const Real kg : world.liquid.particles.owed_kg) row.owed_kg += kg;
   if (yarn_volume > 0) row.mean_saturation = weighted_saturation / yarn_volume;
   return row;
@@ -76,6 +93,7 @@ void visit_columns(const Row& r, Column&& column) {
   column("absorbed_particles", r.absorbed_particles);
   column("released_particles", r.released_particles);
   column("bounces", r.bounces);
+  column("lowest_cloth_m", r.lowest_cloth_m);
 }
 
 // One past the end of the last whole line at or after `from`.

@@ -86,11 +86,13 @@ void write_vtp(const std::filesystem::path& path, const PolyData& data, const Vt
     }
   }
 
-  const bool lines = !data.line_start.empty();
-  const std::size_t cells = lines ? data.line_start.size() - 1 : count;
-  std::vector<std::int32_t> connectivity(count), ends(cells);
-  for (std::size_t i = 0; i < count; ++i) connectivity[i] = static_cast<std::int32_t>(i);
-  for (std::size_t i = 0; i < cells; ++i) ends[i] = lines ? data.line_start[i + 1] : static_cast<std::int32_t>(i + 1);
+  const bool triangles = !data.triangles.empty(), lines = !data.line_start.empty() && !triangles;
+  const std::size_t cells = triangles ? data.triangles.size() : lines ? data.line_start.size() - 1 : count;
+  std::vector<std::int32_t> connectivity(triangles ? 3 * cells : count), ends(cells);
+  for (std::size_t i = 0; i < connectivity.size(); ++i)
+    connectivity[i] = triangles ? data.triangles[i / 3][i % 3] : static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < cells; ++i)
+    ends[i] = triangles ? static_cast<std::int32_t>(3 * i + 3) : lines ? data.line_start[i + 1] : static_cast<std::int32_t>(i + 1);
   IMBIBE_ASSERT(!lines || (data.line_start.front() == 0 && static_cast<std::size_t>(data.line_start.back()) == count));
 
   AppendedBlocks blocks;
@@ -102,10 +104,10 @@ void write_vtp(const std::filesystem::path& path, const PolyData& data, const Vt
       "</DataArray></FieldData>\n",
       when.time_s);
   text += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\""
-                      " NumberOfPolys=\"0\">\n",
-                      count, lines ? 0 : cells, lines ? cells : 0);
+                      " NumberOfPolys=\"{}\">\n",
+                      count, lines || triangles ? 0 : cells, lines ? cells : 0, triangles ? cells : 0);
   text += "<Points>\n" + blocks.element<float>("Points", as_floats(data.points), 3) + "</Points>\n";
-  const char* cell_kind = lines ? "Lines" : "Verts";
+  const char* cell_kind = triangles ? "Polys" : lines ? "Lines" : "Verts";
   text += fmt::format("<{}>\n", cell_kind);
   text += blocks.element<std::int32_t>("connectivity", connectivity, 1);
   text += blocks.element<std::int32_t>("offsets", ends, 1);

@@ -1,11 +1,12 @@
 // Files for ParaView and other readers of VTK's XML formats, written without linking VTK.
-//   .vtp  PolyData: points with a vertex cell each, or poly-lines; point data; binary appended ("raw"), float32/int32
+//   .vtp  PolyData: points with a vertex cell each, or poly-lines, or triangles; point data; binary appended ("raw"), float32/int32
 //   .pvd  Collection: which file belongs to which time; rewritten whole, so it is readable at any moment
 // Format: "VTK File Formats", The Visualization Toolkit User's Guide, XML section. header_type UInt64, little endian.
 // A value that is not finite is never written: the writer throws NumericalError naming the array and the point.
 // Tested in tests/io/vtk_test.cpp by reading back with VTK itself (python3-vtk9).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -27,6 +28,7 @@ struct PolyData {
   std::vector<Vec3f> points;
   // Poly-line k joins points [line_start[k], line_start[k+1]). Empty: every point is a vertex cell of its own.
   std::vector<std::int32_t> line_start;
+  std::vector<std::array<std::int32_t, 3>> triangles;  // in place of lines and vertices
   std::vector<PointArray> arrays;
 
   void add(std::string name, std::vector<float> values, int components = 1) {

@@ -5,6 +5,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/portable.h"
+#include "imbibe/core/random.h"
 
 namespace imbibe {
 
@@ -83,18 +84,76 @@ bool occupied(const Source& s, const std::vector<Vec3>& points, const Liquid& li
   });
 }
 
+// Particles of a pipe come in small batches, so that a rich jet does not cut the step to its own rhythm.
+constexpr Real pipe_batch = 4e-3;  // s
+constexpr int random_places = 8;
+
+Vec3 place_in_pipe(const Source& s, std::uint64_t number, int attempt) {
+  const RandomCounter id{s.seed, number, static_cast<std::uint64_t>(attempt)};
+  const Vec3 axis = normalized(s.velocity), helper = std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
+  const Vec3 a = normalized(cross(axis, helper)), b = cross(axis, a);
+  const Real r = s.radius * std::sqrt(uniform(id, 0)), angle = 2 * pi * uniform(id, 1);
+  return s.centre + r * std::cos(angle) * a + r * std::sin(angle) * b - s.length * uniform(id, 2) * axis;
+}
+
+EmitReport emit_from_pipe(Source& source, Liquid& liquid, Real t1) {
+  EmitReport report;
+  const Real gap = free_distance * liquid.spacing();
+  const auto due = [&] { return source.start + source.interval * source.emitted; };
+  if (source.emitted >= source.count || next_emission(source) >= t1) return report;
+  Bounds region = bounds_of(source);
+  region.include(region.upper + source.velocity * (t1 - due()));
+  region.include(region.lower + source.velocity * (t1 - due()));
+  region.grow(gap);
+  std::vector<Vec3> taken;
+  for (const Float4& f : liquid.particles.position)
+    if (const Vec3 p{f.x, f.y, f.z}; region.contains(p)) taken.push_back(p);
+  while (source.emitted < source.count && due() < t1) {
+    bool placed = false;
+    for (int attempt = 0; attempt < random_places && !placed; ++attempt) {
+      const Vec3 at = place_in_pipe(source, static_cast<std::uint64_t>(source.emitted), attempt) +
+                      std::max(0.0, std::min(t1 - due(), pipe_batch)) * source.velocity;
+      placed = std::none_of(taken.begin(), taken.end(), [&](const Vec3& p) { return squared_norm(p - at) < gap * gap; });
+      if (!placed) continue;
+      add_particle(liquid, at, source.velocity);
+      taken.push_back(at);
+    }
+    if (!placed) {
+      report.waiting = true;
+      break;
+    }
+    ++source.emitted, ++report.particles;
+    source.supplied_kg += liquid.particle_mass;
+    report.kg += liquid.particle_mass;
+  }
+  return report;
+}
+
 }  // namespace
 
 Real next_emission(const Source& source) {
   if (source.emitted >= source.count) return std::numeric_limits<Real>::infinity();
+  if (source.form == SourceForm::pipe) {
+    const int batch = std::clamp(static_cast<int>(pipe_batch / source.interval), 1, source.count - source.emitted);
+    return source.start + source.interval * (source.emitted + batch - 1);
+  }
   return source.start + source.interval * source.emitted;
 }
 
 std::size_t particle_count(const Source& source, const Liquid& liquid) {
+  if (source.form == SourceForm::pipe) return static_cast<std::size_t>(source.count);
   return rounded_count(volume_of(source), liquid.particle_mass / liquid.kind.density);
 }
 
 Bounds bounds_of(const Source& source) {
+  if (source.form == SourceForm::pipe) {
+    Bounds b;
+    const Vec3 axis = normalized(source.velocity);
+    for (const Vec3& end : {source.centre, source.centre - source.length * axis}) b.include(end);
+    const auto across = [&](Real a) { return source.radius * std::sqrt(std::max(0.0, 1 - a * a)); };
+    const Vec3 half{across(axis.x), across(axis.y), across(axis.z)};
+    return {b.lower - half, b.upper + half};
+  }
   const Real radius = portable::cbrt(3 * source.volume / (4 * pi));
   const Vec3 half = source.form == SourceForm::box ? 0.5 * source.size : Vec3{radius, radius, radius};
   return {source.centre - half, source.centre + half};
@@ -102,6 +161,7 @@ Bounds bounds_of(const Source& source) {
 
 EmitReport emit(Source& source, Liquid& liquid, Real t0, Real t1) {
   IMBIBE_ASSERT(liquid.particle_mass > 0 && t1 >= t0);
+  if (source.form == SourceForm::pipe) return emit_from_pipe(source, liquid, t1);
   EmitReport report;
   const Real particle_volume = liquid.particle_mass / liquid.kind.density;
   while (next_emission(source) < t1) {

@@ -1,11 +1,15 @@
-// Where liquid comes from: drops, boxes of liquid, and a timed dropper (a drop repeated).
+// Where liquid comes from: drops, boxes of liquid, a timed dropper (a drop repeated), and a pipe.
 //
+// A pipe lets go single particles at a steady rate, each from a random place inside its bore (counter-based random: seed,
+// number of the particle), with a constant velocity along it. Particles due since the last step are carried on by what
+// they would have flown. Where eight random places are all taken, the particle waits.
 // Particles are seeded on a lattice of the liquid's spacing. The supplied mass is exactly (number of particles) x
 // (particle mass); the number is the wanted volume over the particle volume, rounded, and the difference is carried to
 // the source's next drop, so a dropper's total is right to half a particle.
 // A drop that would overlap liquid already there waits until the place is free: never two particles in one place.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "imbibe/core/parameter.h"
@@ -15,7 +19,7 @@
 
 namespace imbibe {
 
-enum class SourceForm { drop, box };
+enum class SourceForm { drop, box, pipe };
 
 struct Source {
   std::string name{};
@@ -26,7 +30,10 @@ struct Source {
   Vec3 velocity{};           // m/s at birth
   Real start = 0;            // s
   Real interval = 0;         // s between drops of a dropper
-  int count = 1;             // drops
+  int count = 1;             // drops; of a pipe, particles
+  Real radius = 0;           // m, of a pipe's bore; its mouth is centred on `centre`, its axis lies along `velocity`
+  Real length = 0;           // m, of the part of a pipe from whose random places particles start
+  std::uint64_t seed = 1;    // of a pipe's random places
 
   // Progress (state, saved in checkpoints).
   int emitted = 0;           // drops
@@ -37,7 +44,8 @@ struct Source {
 template <class V>
 void describe(V& v, Source& s) {
   v.value("name", s.name, {.help = "name in the report"});
-  v.choice("form", s.form, {{"drop", SourceForm::drop}, {"box", SourceForm::box}}, "a ball or a box of liquid");
+  v.choice("form", s.form, {{"drop", SourceForm::drop}, {"box", SourceForm::box}, {"pipe", SourceForm::pipe}},
+           "a ball, a box, or a pipe of liquid");
   v.value("centre", s.centre, {.unit = "m", .shown = "mm", .required = true, .help = "centre at birth"});
   v.value("volume", s.volume, {.unit = "m3", .shown = "uL", .min = 0, .help = "volume of each drop"});
   v.value("size", s.size, {.unit = "m", .shown = "mm", .min = 0, .help = "edges of a box of liquid"});

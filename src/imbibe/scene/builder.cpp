@@ -8,6 +8,7 @@
 
 #include "imbibe/core/portable.h"
 #include "imbibe/core/quantity.h"
+#include "imbibe/scene/cloth_builder.h"
 #include "imbibe/scene/placement_checks.h"
 
 namespace imbibe {
@@ -93,6 +94,12 @@ void add_textile(const Scene& scene, std::size_t i, const Library& library, Worl
   const TextileSpec& spec = scene.textiles[i];
   const std::string key = fmt::format("textiles[{}]", i);
   try {
+    if (spec.wetting.is_cells()) {
+      world.cell_cloths.push_back(build_cell_cloth(scene, i));
+      return;
+    }
+    if (spec.sheet.is_soft())
+      throw InputError({Problem{.key = key + ".sheet", .message = "a soft sheet takes `wetting: cells` in this version"}});
     auto fabric = std::make_shared<Fabric>(build_fabric(spec.fabric, library.fibres, key));
     set_contact_angles(spec, *fabric);
     Textile textile;
@@ -123,8 +130,9 @@ Contents starting_contents(const StartSpec& start, const YarnNetwork& network, c
   return contents;
 }
 
-void add_wetting(const Scene& scene, std::size_t i, World& world, std::vector<Problem>& problems) {
-  Textile& textile = world.textiles[i];
+// i: of the scene's textiles; index: of the world's.
+void add_wetting(const Scene& scene, std::size_t i, std::size_t index, World& world, std::vector<Problem>& problems) {
+  Textile& textile = world.textiles[index];
   const YarnNetwork& network = textile.fabric->network;
   const LiquidKind& kind = world.liquid.kind;
   try {
@@ -171,6 +179,8 @@ Bounds default_domain(const World& world) {
   Bounds all;
   for (const Source& source : world.sources) all.include(bounds_of(source));
   for (const Textile& textile : world.textiles) all.include(bounds_of_sheet(textile));
+  for (const CellCloth& cloth : world.cell_cloths)
+    for (const Vec3& x : cloth.soft.sheet.position) all.include(x);
   for (const SolidBody& solid : world.solids) {
     if (const Plane* plane = std::get_if<Plane>(&solid.shape)) all.include(plane->point);
     else all.include(bounds_of(solid.shape));
@@ -245,6 +255,20 @@ std::vector<Source> sources_of(const Scene& scene) {
   return sources;
 }
 
+void add_pipes(const Scene& scene, World& world) {
+  for (std::size_t i = 0; i < scene.liquid.pipes.size(); ++i) {
+    try {
+      world.sources.push_back(source_of_pipe(scene, i, world.liquid.particle_mass, world.liquid.kind.density));
+      world.props.push_back({.name = world.sources.back().name, .mesh = pipe_geometry(scene.liquid.pipes[i]).mesh});
+    } catch (const InputError& error) {
+      std::vector<Problem> problems = error.problems();
+      for (Problem& p : problems)
+        if (p.file.empty()) p.key = fmt::format("liquid.pipes[{}].file", i);
+      throw InputError(std::move(problems));
+    }
+  }
+}
+
 SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind) {
   SceneEstimate e;
   e.capillary_step = std::numeric_limits<Real>::infinity();
@@ -259,8 +283,11 @@ SceneEstimate estimate_scene(const Scene& scene, const LiquidKind& kind) {
       e.capillary_step = scene.liquid.solver.capillary_factor *
                          std::sqrt(kind.density * portable::pow(e.spacing, 3) / (2 * pi * kind.surface_tension));
   }
+  for (const PipeSpec& pipe : scene.liquid.pipes)
+    if (particle_mass > 0) e.particles += particles_of_pipe(pipe, scene.duration, particle_mass / kind.density);
   double fabric_bytes = 0, points = 0;
   for (const TextileSpec& textile : scene.textiles) {
+    if (textile.wetting.is_cells()) continue;
     const FabricEstimate f = estimate_fabric(textile.fabric);
     e.segments += f.segments, e.pores += f.pores, e.edges += f.edges;
     points += f.points, fabric_bytes += f.bytes;
@@ -290,7 +317,9 @@ World build_world(const Scene& scene, const Library& library, const std::functio
   world.liquid.particle_mass = scene.liquid.particle_mass.value_or(0);
   // Only estimates so far: nothing is allocated for a scene that the machine cannot hold.
   check_limits(scene, estimate_scene(scene, world.liquid.kind), problems);
-  if (!scene.textiles.empty() && !(world.liquid.kind.viscosity > 0 && world.liquid.kind.surface_tension > 0))
+  const bool any_network = std::any_of(scene.textiles.begin(), scene.textiles.end(),
+                                       [](const TextileSpec& t) { return !t.wetting.is_cells(); });
+  if (any_network && !(world.liquid.kind.viscosity > 0 && world.liquid.kind.surface_tension > 0))
     problems.push_back(scene_problem(scene, "liquid.kind",
                                      "a textile takes up only a liquid with viscosity and surface tension above 0"));
   if (!problems.empty()) throw InputError(std::move(problems));
@@ -303,15 +332,22 @@ World build_world(const Scene& scene, const Library& library, const std::functio
   if (continue_sources) continue_sources(world);
   for (std::size_t i = 0; i < scene.textiles.size(); ++i) add_textile(scene, i, library, world, problems);
   for (std::size_t i = 0; i < scene.solids.size(); ++i) add_solid(scene, i, world, problems);
-  const bool all_built = world.textiles.size() == scene.textiles.size() && world.solids.size() == scene.solids.size();
+  try {
+    add_pipes(scene, world);
+  } catch (const InputError& error) {
+    add_at(scene, error, problems);
+  }
+  const bool all_built = problems.empty() && world.textiles.size() + world.cell_cloths.size() == scene.textiles.size() && world.solids.size() == scene.solids.size();
   if (all_built) {
     world.domain = default_domain(world);
     if (scene.domain.lower) world.domain.lower = *scene.domain.lower;
     if (scene.domain.upper) world.domain.upper = *scene.domain.upper;
     check_placements(scene, world, problems);
+    check_pipes(scene, world, problems);
   }
   if (!problems.empty()) throw InputError(std::move(problems));
-  for (std::size_t i = 0; i < world.textiles.size(); ++i) add_wetting(scene, i, world, problems);
+  for (std::size_t i = 0, index = 0; i < scene.textiles.size(); ++i)
+    if (!scene.textiles[i].wetting.is_cells()) add_wetting(scene, i, index++, world, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
   for (const Textile& textile : world.textiles)
     world.ledger.initial_kg += total_sorbed_kg(*textile.model, textile.contents) +

@@ -39,6 +39,8 @@ double allowed_memory(const Scene& scene);
 
 // The drops, boxes and droppers of the scene as sources.
 std::vector<Source> sources_of(const Scene& scene);
+// The pipes of the scene, after the others: sources and what is drawn of them. Throws InputError.
+void add_pipes(const Scene& scene, World& world);
 
 // How to step it: to the scene's end, with its output times and limits.
 RunPlan run_plan(const Scene& scene);

@@ -42,7 +42,7 @@ std::string liquid_text(const World& world) {
               fmt::format("{:.4g} mg, {:.4g} mm", liquid.particle_mass * 1e6, liquid.spacing() * 1e3));
   for (const Source& source : world.sources) {
     const DropNumbers n = drop_numbers(source, liquid, g);
-    text += fmt::format("{}{}\n", source.name, source.count > 1 ? fmt::format(" ({} times)", source.count) : "");
+    text += fmt::format("{}{}\n", source.name, source.count > 1 && source.form != SourceForm::pipe ? fmt::format(" ({} times)", source.count) : "");
     text += row("volume, mass", fmt::format("{:.4g} uL, {:.4g} mg", n.mass / k.density * 1e9, n.mass * 1e6));
     text += row("radius, particles", fmt::format("{:.4g} mm, {:.0f} ({:.1f} across)", n.radius * 1e3, n.particles, n.particles_across));
     text += row("Bond number", fmt::format("{:.3g}", n.bond_number));
@@ -81,7 +81,8 @@ std::string cost_text(const Scene& scene, const World& world) {
 DropNumbers drop_numbers(const Source& source, const Liquid& liquid, Real gravity) {
   DropNumbers n;
   const LiquidKind& k = liquid.kind;
-  const Real volume = source.form == SourceForm::box ? source.size.x * source.size.y * source.size.z : source.volume;
+  const Real volume = source.form == SourceForm::pipe ? source.volume * source.count
+                      : source.form == SourceForm::box ? source.size.x * source.size.y * source.size.z : source.volume;
   const Real speed = norm(source.velocity);
   n.radius = portable::cbrt(3 * volume / (4 * pi));
   n.mass = volume * k.density;

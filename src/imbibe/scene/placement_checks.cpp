@@ -66,8 +66,9 @@ bool overlap(const Source& a, const Source& b) {
 
 // Sources that start at the same time must not share room; a later one waits until its place is free. Sweep along x.
 void check_overlaps(const Scene& scene, const std::vector<Source>& sources, std::vector<Problem>& problems) {
-  std::vector<std::size_t> order(sources.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (sources[i].form != SourceForm::pipe) order.push_back(i);
   const auto left = [&](std::size_t i) { return bounds_of(sources[i]).lower.x; };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return left(a) < left(b); });
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -85,6 +86,7 @@ void check_overlaps(const Scene& scene, const std::vector<Source>& sources, std:
 void check_source(const Scene& scene, const World& world, std::size_t i, std::vector<Problem>& problems) {
   const Source& s = world.sources[i];
   if (s.emitted >= s.count) return;  // it has fallen already, in a running world
+  if (s.form == SourceForm::pipe) return;  // checked by check_pipes
   const std::string key = key_of_source(scene, i);
   const auto fail = [&](const std::string& message) {
     problems.push_back(scene_problem(scene, key + ".centre", message));

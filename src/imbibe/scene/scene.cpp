@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "imbibe/scene/cloth_builder.h"
 #include "imbibe/scene/describe_reader.h"
 #include "imbibe/scene/describe_writer.h"
 
@@ -36,6 +37,12 @@ void resolve_file_names(Scene& scene) {
     const std::filesystem::path folder = folder_of(scene, fmt::format("textiles[{}].weave", i));
     fabric.folder = folder;
     if (names_wif(fabric.weave)) fabric.weave = resolved(fabric.weave, folder);
+    std::optional<SoftSheetSpec>& soft = scene.textiles[i].sheet.soft;
+    if (soft && soft->mesh) soft->mesh = resolved(*soft->mesh, folder_of(scene, fmt::format("textiles[{}].sheet.soft.mesh", i)));
+  }
+  for (std::size_t i = 0; i < scene.liquid.pipes.size(); ++i) {
+    std::optional<std::string>& file = scene.liquid.pipes[i].file;
+    if (file) file = resolved(*file, folder_of(scene, fmt::format("liquid.pipes[{}].file", i)));
   }
   for (std::size_t i = 0; i < scene.solids.size(); ++i) {
     std::optional<std::string>& file = scene.solids[i].shape.file;
@@ -68,6 +75,8 @@ void check_textile(const Scene& scene, std::size_t i, std::vector<Problem>& prob
   if (v == 0) problems.push_back(scene_problem(scene, key + ".warp_direction", "has no length"));
   if (u > 0 && v > 0 && std::abs(dot(t.weft_direction, t.warp_direction)) > 1e-6 * u * v)
     problems.push_back(scene_problem(scene, key + ".warp_direction", "is not square to weft_direction"));
+  check_cloth_keys(scene, i, problems);
+  if (!t.wetting.is_cells() && !t.sheet.is_soft())
   for (const auto& [name, direction] : {std::pair{".weft_direction", t.weft_direction}, {".warp_direction", t.warp_direction}})
     if (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z) > (1 + 1e-9) * norm(direction))
       problems.push_back(scene_problem(scene, key + name, "in this version a sheet lies along x, y and z: one component, two zeros"));
@@ -77,11 +86,12 @@ void check_textile(const Scene& scene, std::size_t i, std::vector<Problem>& prob
 
 void check_keys_against_each_other(const Scene& scene, std::vector<Problem>& problems) {
   const LiquidSpec& liquid = scene.liquid;
-  const bool any = !liquid.drops.empty() || !liquid.boxes.empty() || !liquid.droppers.empty();
+  const bool any = !liquid.drops.empty() || !liquid.boxes.empty() || !liquid.droppers.empty() || !liquid.pipes.empty();
   if (any && !liquid.particle_mass)
     problems.push_back(scene_problem(scene, "liquid.particle_mass", "is missing: it sets the resolution of the liquid"));
   if (!any && scene.textiles.empty())
     problems.push_back(scene_problem(scene, "", "has neither liquid nor textiles: nothing would happen"));
+  check_pipe_keys(scene, problems);
   check_names(scene.textiles, "textiles", scene, problems);
   for (std::size_t i = 0; i < scene.textiles.size(); ++i) check_textile(scene, i, problems);
   for (std::size_t i = 0; i < scene.solids.size(); ++i) {
@@ -116,6 +126,7 @@ Scene scene_from(DataNode root, std::vector<Problem> problems, const std::vector
     log.problems.push_back(problem_at(root.place, "", "is not a scene: wants a map of keys such as 'version: 1'"));
   }
   scene.places = std::move(log.places);
+  apply_presets(scene, log.problems);
   if (log.problems.empty()) check_keys_against_each_other(scene, log.problems);
   if (!log.problems.empty()) throw InputError(std::move(log.problems));
   resolve_file_names(scene);

@@ -20,6 +20,7 @@
 #include "imbibe/liquid/liquid_step.h"
 #include "imbibe/scene/document.h"
 #include "imbibe/scene/picture_options.h"
+#include "imbibe/scene/soft_sheet_spec.h"
 #include "imbibe/sim/measures.h"
 #include "imbibe/wetting/wetting_model.h"
 
@@ -116,12 +117,45 @@ void describe(V& v, DropperSpec& p) {
   v.value("count", p.count, {.min = 1, .max = 1e6, .required = true, .help = "number of drops"});
 }
 
+// A pipe: its mesh (or a plain tube), where it stands, and the jet that leaves it. The pipe's own axis is z; the jet leaves
+// at its upper end, so the transform aims it. The mesh is drawn; it is no wall.
+struct PipeSpec {
+  std::string name;
+  std::optional<std::string> file;
+  MeshTransform transform;
+  std::optional<Real> radius, length;  // m
+  std::optional<Real> flow;            // m3/s
+  std::optional<Real> particle_rate;   // 1/s
+  Real speed = 1;                      // m/s
+  Real start = 0;                      // s
+  std::optional<Real> stop;            // s
+};
+
+template <class V>
+void describe(V& v, PipeSpec& p) {
+  v.value("name", p.name, {.help = "name in the report"});
+  v.value("file", p.file, {.help = "OBJ, PLY or STL mesh of the pipe, its axis along z; default: a plain tube"});
+  v.group("transform", p.transform, "how the pipe stands in the world; the jet leaves at its upper end, along its axis");
+  v.value("radius", p.radius, {.unit = "m", .shown = "mm", .min = 0, .max = 10, .above_min = true,
+                               .help = "of the bore; default: 0.8 of the mesh's half width"});
+  v.value("length", p.length, {.unit = "m", .shown = "mm", .min = 0, .max = 10, .above_min = true,
+                               .help = "of the part of the bore that particles start in; default: the mesh's length"});
+  v.value("flow", p.flow, {.unit = "m3/s", .shown = "mL/s", .min = 0, .max = 1, .above_min = true,
+                           .help = "volume per time; or give particle_rate"});
+  v.value("particle_rate", p.particle_rate, {.unit = "1/s", .min = 0, .max = 1e9, .above_min = true,
+                                             .help = "particles per second; or give flow"});
+  v.value("speed", p.speed, {.unit = "m/s", .min = 0, .max = 100, .above_min = true, .help = "of the jet"});
+  v.value("start", p.start, {.unit = "s", .min = 0, .help = "when it begins"});
+  v.value("stop", p.stop, {.unit = "s", .min = 0, .help = "when it ends; default: never"});
+}
+
 struct LiquidSpec {
   LiquidKindSpec kind;
   std::optional<Real> particle_mass;  // kg
   std::vector<DropSpec> drops;
   std::vector<LiquidBoxSpec> boxes;
   std::vector<DropperSpec> droppers;
+  std::vector<PipeSpec> pipes;
   LiquidParams solver;
 };
 
@@ -134,21 +168,8 @@ void describe(V& v, LiquidSpec& p) {
   v.list("drops", p.drops, "drops of liquid, each once");
   v.list("boxes", p.boxes, "boxes of liquid");
   v.list("droppers", p.droppers, "drops that repeat at an interval");
+  v.list("pipes", p.pipes, "pipes that let a jet of particles go");
   v.group("solver", p.solver, "accuracy of the flow solver");
-}
-
-enum class SheetKind { fixed, soft };  // soft: later versions
-
-struct SheetSpec {
-  SheetKind kind = SheetKind::fixed;
-};
-
-template <class V>
-void describe(V& v, SheetSpec& p) {
-  if constexpr (requires { v.short_form(""); }) v.short_form("kind");
-  v.choice("kind", p.kind, {{"fixed", SheetKind::fixed}}, "fixed: a flat sheet that does not move");
-  if constexpr (requires { v.unavailable("", ""); })
-    v.unavailable("soft", "a soft, moving sheet is not available in this version; write `sheet: fixed`");
 }
 
 enum class WettingKind { network, cells };
@@ -156,15 +177,17 @@ enum class WettingKind { network, cells };
 struct WettingSpec {
   WettingKind kind = WettingKind::network;
   WettingParams network;
+  std::optional<CellParams> cells;
+  bool is_cells() const { return kind == WettingKind::cells || cells.has_value(); }
 };
 
 template <class V>
 void describe(V& v, WettingSpec& p) {
   if constexpr (requires { v.short_form(""); }) v.short_form("kind");
-  v.choice("kind", p.kind, {{"network", WettingKind::network}}, "network: yarn segments and pores");
+  v.choice("kind", p.kind, {{"network", WettingKind::network}, {"cells", WettingKind::cells}},
+           "network: yarn segments and pores; cells: a cell of liquid parcels at each node of the sheet (no weave needed)");
   v.group("network", p.network, "models and numbers of the yarn and pore network");
-  if constexpr (requires { v.unavailable("", ""); })
-    v.unavailable("cells", "the cell model is not available in this version; write `wetting: network`");
+  v.group("cells", p.cells, "seed B's cells; giving this map chooses them");
 }
 
 // A wet place of a textile at the start.

@@ -79,4 +79,25 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
   return m;
 }
 
+CellClothMeasures measure(const CellCloth& cloth, const MeasureParams& params) {
+  CellClothMeasures m;
+  const CellGrid& grid = *cloth.grid;
+  Range along_warp, along_weft;
+  Real capacity = 0, content = 0;
+  for (std::size_t c = 0; c < grid.cells(); ++c) {
+    const Real s = cell_saturation(grid, cloth.contents, c);
+    capacity += grid.capacity(c), content += cloth.contents.content_kg[c];
+    m.max_saturation = std::max(m.max_saturation, s);
+    if (!(s > params.wet_saturation)) continue;
+    m.wet_area += grid.area[c];
+    along_weft.include(grid.centre(c).x);
+    along_warp.include(grid.centre(c).y);
+  }
+  m.extent_warp = along_warp.length(), m.extent_weft = along_weft.length();
+  if (capacity > 0) m.mean_saturation = content / capacity;
+  m.capacity_volume = capacity / 1000;
+  for (const Vec3& x : cloth.soft.sheet.position) m.lowest = std::min(m.lowest, x.z);
+  return m;
+}
+
 }  // namespace imbibe

@@ -43,6 +43,15 @@ struct TextileMeasures {
 
 TextileMeasures measure(const Textile& textile, const Air& air, const MeasureParams& params = {});
 
+// The same of a cloth of cells. Lengths are material; `lowest` is where its lowest node hangs.
+struct CellClothMeasures {
+  Real wet_area = 0, extent_warp = 0, extent_weft = 0;
+  Real mean_saturation = 0, max_saturation = 0;  // over-full cells count with more than 1
+  Real capacity_volume = 0;                      // m3 of water that it can hold: the weight of mean_saturation
+  Real lowest = unlimited;                       // m, z of the lowest node
+};
+CellClothMeasures measure(const CellCloth& cloth, const MeasureParams& params = {});
+
 // Saturation of every node, as above.
 std::vector<Real> node_saturations(const Textile& textile, const Air& air);
 

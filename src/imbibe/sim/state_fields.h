@@ -18,6 +18,24 @@
 
 namespace imbibe {
 
+template <class Visitor, class AnySheet>
+void visit_soft_sheet(Visitor& v, AnySheet& soft, const std::string& group) {
+  v.group(group);
+  v.array("position", soft.sheet.position);
+  v.array("velocity", soft.sheet.velocity);
+  v.array("added_mass", soft.sheet.added_mass);
+  v.array("stiffness_factor", soft.sheet.stiffness_factor);
+  v.array("damping_added", soft.sheet.damping_added);
+  v.array("cling", soft.sheet.cling);
+  v.value("sheet_time", soft.sheet.time);
+  v.value("substep", soft.sheet.substep);
+  v.value("support_impulse", soft.support_impulse);
+  v.value("liquid_impulse", soft.liquid_impulse);
+  v.value("calm_s", soft.calm_s);
+  v.value("mass_at_rest", soft.mass_at_rest);
+  v.value("at_rest", soft.at_rest);
+}
+
 template <class Visitor, class AnyWorld>
 void visit_state(Visitor& v, AnyWorld& world) {
   v.group("world");
@@ -86,6 +104,21 @@ void visit_state(Visitor& v, AnyWorld& world) {
       v.group("textiles/" + std::to_string(i) + "/reservoirs/" + std::to_string(r));
       v.value("supplied_kg", textile.reservoirs[r].supplied_kg);
     }
+  }
+
+  for (std::size_t i = 0; i < world.cell_cloths.size(); ++i) {
+    auto& cloth = world.cell_cloths[i];
+    visit_soft_sheet(v, cloth.soft, "cell_cloths/" + std::to_string(i));
+    v.array("parcel_kg", cloth.contents.parcel_kg);
+    v.array("parcel_place", cloth.contents.parcel_place);
+    v.array("parcel_velocity", cloth.contents.parcel_velocity);
+    v.array("content_kg", cloth.contents.content_kg);
+    v.array("leak_due_kg", cloth.contents.leak_due_kg);
+    v.array("waiting_kg", cloth.waiting_kg);
+    v.value("absorbed_particles", cloth.absorbed_particles);
+    v.value("released_particles", cloth.released_particles);
+    v.value("bounces", cloth.bounces);
+    v.value("crossings", cloth.crossings);
   }
 }
 

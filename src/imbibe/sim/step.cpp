@@ -10,6 +10,7 @@
 #include "imbibe/coupling/absorption.h"
 #include "imbibe/coupling/release.h"
 #include "imbibe/coupling/wet_wall.h"
+#include "imbibe/sim/cloth_stage.h"
 #include "imbibe/sim/measures.h"
 #include "imbibe/sim/rest.h"
 
@@ -276,17 +277,21 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     Real max_step = allowed;
     const Real interval = textile_interval(world, true);
     if (!world.textiles.empty()) max_step = std::min(max_step, std::max(interval - pace.since_wetting, 1e-6));
+    max_step = std::min(max_step, longest_cloth_step(world));
     move_liquid(world, max_step, scratch, report);
+    step_cloths(world, report.step_s, scratch, report);
     bounce_off_yarns(world, scratch, report);
     pace.since_wetting += report.step_s;
     if (!world.textiles.empty() && pace.since_wetting >= interval * (1 - 1e-9))
       exchange_all(world, pace.since_wetting, scratch, report);
     leave(world, scratch, report);
-    if (options.rest_allowed) judge_rest(world, scratch.liquid.fields);
+    if (options.rest_allowed && !any_cloth_moves(world)) judge_rest(world, scratch.liquid.fields);
   } else {
     if (pace.since_wetting > 0 && !world.textiles.empty()) exchange_all(world, pace.since_wetting, scratch, report);
     report.step_s = world.textiles.empty() ? allowed : std::min(allowed, textile_interval(world, false));
     report.step_bound = report.step_s < allowed ? "wetting" : allowed < longest ? "drop" : "until";
+    if (longest_cloth_step(world) < report.step_s) report.step_s = longest_cloth_step(world), report.step_bound = "cloth";
+    step_cloths(world, report.step_s, scratch, report);
     if (!world.textiles.empty()) exchange_all(world, report.step_s, scratch, report);
     if (pace.resting) wake_when_changed(world);
   }

@@ -1,5 +1,5 @@
 // One step of the world, as a short list of named stages in physical order:
-//   emit -> liquid -> contact -> exchange and wetting -> leave -> ledger
+//   emit -> liquid -> cloth -> contact -> exchange and wetting -> leave -> ledger
 // Two clocks: the free liquid makes SPH steps (1e-5 - 1e-3 s); the textiles make steps of their own interval, each after
 // several SPH steps, or alone while no free liquid moves (resting on the face, or none left). Resting liquid still
 // feeds the textile: the network takes from its footprint, and when 2 % of it is gone, or the face under it has become
@@ -32,7 +32,9 @@ struct StepReport {
   ContactCounts contact;             // boxes and triangles tested
   std::size_t emitted = 0, absorbed = 0, released = 0, left = 0;  // particles
   bool converged = true;
-  double liquid_wall_s = 0, wetting_wall_s = 0;  // wall-clock seconds spent
+  bool cloth_moved = false;
+  int cloth_substeps = 0;
+  double liquid_wall_s = 0, wetting_wall_s = 0, cloth_wall_s = 0;  // wall-clock seconds spent
 };
 
 // Work space kept between steps so that nothing is allocated; not state: results do not depend on it.
@@ -47,6 +49,7 @@ struct StepScratch {
   std::vector<std::uint8_t> dead;
   std::vector<ParticleHit> hits;
   ContactScratch contact;
+  std::vector<SoftSheetScratch> sheets_in_motion;  // of the cell cloths, in their order
 };
 
 // Emits what the sources owe at the world's time; step() does it too. For showing a world before its first step.

@@ -27,6 +27,10 @@ MassBalance mass_balance(const World& world) {
     b.pore += sum(textile.contents.liquid_kg, segments, nodes);
     b.free += sum(textile.exchange.waiting_kg, 0, textile.exchange.waiting_kg.size());
   }
+  for (const CellCloth& cloth : world.cell_cloths) {
+    b.cell += cell_kg(cloth);
+    b.free += waiting_kg(cloth);
+  }
   b.evaporated = world.ledger.evaporated_kg;
   b.left = world.ledger.left_kg;
   b.supplied = world.ledger.supplied_kg;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "imbibe/core/types.h"
+#include "imbibe/coupling/cell_cloth.h"
 #include "imbibe/coupling/contact.h"
 #include "imbibe/coupling/exchange_state.h"
 #include "imbibe/coupling/face_map.h"
@@ -26,6 +27,13 @@ struct SolidBody {
   Shape shape;
   WallMaterial material;
   Vec3f colour{0.55f, 0.55f, 0.58f};
+};
+
+// Something that is drawn and touches nothing (a pipe).
+struct Prop {
+  std::string name;
+  TriangleMesh mesh;
+  Vec3f colour{0.45f, 0.46f, 0.48f};
 };
 
 struct Textile {
@@ -73,7 +81,9 @@ struct World {
   LiquidParams liquid_params;
   std::vector<Source> sources;
   std::vector<Textile> textiles;
+  std::vector<CellCloth> cell_cloths;  // seed B: cloths whose nodes are cells of liquid
   std::vector<SolidBody> solids;
+  std::vector<Prop> props;
   Ledger ledger;
   Pace pace;
   Bounds domain;            // a particle outside is removed and counted in left_kg

@@ -109,6 +109,8 @@ std::vector<Vec3> content_of(const Frame& frame) {
     for (Index i = first; i < last; i += 8) content.emplace_back(yarns.points[i]);
     if (last > first) content.emplace_back(yarns.points[last - 1]);
   }
+  for (const DrawnCloth& cloth : frame.cloths)
+    for (std::size_t i = 0; i < cloth.mesh.vertices.size(); i += 8) content.emplace_back(cloth.mesh.vertices[i]);
   Bounds main = bounds_of_cloth(frame);
   const bool cloth = !main.empty();
   if (!cloth) main = bounds_of_liquid(frame);

@@ -16,8 +16,19 @@ void add_yarn(DrawnYarns& yarns, const std::vector<Vec3f>& points, const std::ve
   yarns.colour.push_back(colour);
 }
 
+void set_normals(DrawnMesh& mesh) {
+  mesh.normals.assign(mesh.vertices.size(), Vec3f{});
+  for (const auto& t : mesh.triangles) {
+    const Vec3f n = cross(mesh.vertices[t[1]] - mesh.vertices[t[0]], mesh.vertices[t[2]] - mesh.vertices[t[0]]);
+    for (const Index v : t) mesh.normals[v] += n;
+  }
+  for (Vec3f& n : mesh.normals) n = normalized(n);
+}
+
 Bounds bounds_of_cloth(const Frame& frame) {
   Bounds bounds;
+  for (const DrawnCloth& cloth : frame.cloths)
+    for (const Vec3f& v : cloth.mesh.vertices) bounds.include(Vec3(v));
   for (std::size_t y = 0; y < frame.yarns.yarns(); ++y) {
     const Real r = frame.yarns.radius[y];
     for (Index i = frame.yarns.first_point[y]; i < frame.yarns.first_point[y + 1]; ++i) {

@@ -28,6 +28,15 @@ struct DrawnMesh {
   std::vector<std::array<Index, 3>> triangles;  // counter-clockwise from outside
 };
 
+// A cloth drawn as a surface that darkens with what it holds.
+struct DrawnCloth {
+  std::string name;
+  DrawnMesh mesh;
+  std::vector<float> saturation;     // per vertex
+  std::vector<std::array<float, 2>> uv;  // per vertex, m: where it lies in the cloth, for the weave
+  Vec3f colour{0.80f, 0.74f, 0.62f};  // linear RGB when dry
+};
+
 // A fixed solid: `mesh` when it has triangles, else `shape` (which is then not a MeshShape).
 struct DrawnSolid {
   Shape shape;
@@ -44,12 +53,16 @@ struct Frame {
   std::vector<Vec3f> particles;   // m, free liquid
   Real particle_spacing = 0;      // m
   std::vector<DrawnSolid> solids;
+  std::vector<DrawnCloth> cloths;
   Vec3f up{0, 0, 1};              // of the cloth, for the lie of the yarn's twist
 };
 
 // Appends one yarn; saturation has one value per point.
 void add_yarn(DrawnYarns& yarns, const std::vector<Vec3f>& points, const std::vector<float>& saturation, float radius,
               const Vec3f& colour);
+
+// Unit vertex normals of a surface, weighted by area.
+void set_normals(DrawnMesh& mesh);
 
 // Bounds of cloth, solids (planes excepted) and of liquid.
 Bounds bounds_of_cloth(const Frame& frame);

@@ -29,6 +29,28 @@ void add_textile(DrawnYarns& yarns, const Textile& textile, const Air& air) {
   }
 }
 
+DrawnCloth drawn_cloth(const CellCloth& cloth) {
+  const Sheet& sheet = cloth.soft.sheet;
+  DrawnCloth drawn;
+  drawn.name = cloth.name;
+  for (const Vec3& x : sheet.position) drawn.mesh.vertices.emplace_back(x);
+  drawn.mesh.triangles = sheet.triangles;
+  set_normals(drawn.mesh);
+  drawn.saturation = node_saturation(cloth);
+  for (std::size_t n = 0; n < sheet.size(); ++n)
+    drawn.uv.push_back({static_cast<float>(sheet.u[n]), static_cast<float>(sheet.v[n])});
+  drawn.colour = cloth.colour;
+  return drawn;
+}
+
+DrawnSolid drawn_prop(const Prop& prop) {
+  DrawnSolid drawn;
+  for (const Vec3& x : prop.mesh.vertices) drawn.mesh.vertices.emplace_back(x);
+  drawn.mesh.triangles = prop.mesh.triangles;
+  drawn.colour = prop.colour;
+  return drawn;
+}
+
 }  // namespace
 
 Frame frame_from_world(const World& world, const std::string& title) {
@@ -37,6 +59,8 @@ Frame frame_from_world(const World& world, const std::string& title) {
   frame.title = title;
   for (const Textile& textile : world.textiles) add_textile(frame.yarns, textile, world.air);
   if (!world.textiles.empty()) frame.up = Vec3f(world.textiles.front().placement.n);
+  for (const CellCloth& cloth : world.cell_cloths) frame.cloths.push_back(drawn_cloth(cloth));
+  for (const Prop& prop : world.props) frame.solids.push_back(drawn_prop(prop));
   frame.particle_spacing = world.liquid.spacing();
   frame.particles.reserve(world.liquid.particles.size());
   for (const Float4& p : world.liquid.particles.position) frame.particles.push_back({p.x, p.y, p.z});

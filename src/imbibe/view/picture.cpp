@@ -29,6 +29,8 @@ Real ground_of(const Frame& frame, PictureStyle style) {
   bounds.include(bounds_of_solids(frame));
   if (bounds.empty()) bounds = bounds_of_liquid(frame);
   if (bounds.empty()) return 0;
+  // A soft cloth sags and swings: the table stands well below where it starts.
+  if (!frame.cloths.empty()) return bounds.lower.z - 0.5 * norm(bounds_of_cloth(frame).size());
   return bounds.lower.z - (style == PictureStyle::diagram ? 0.06 : 0.04) * size;
 }
 

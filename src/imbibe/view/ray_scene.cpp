@@ -58,6 +58,8 @@ struct Float4 {
 struct SolidPart {
   DrawnMesh mesh;
   Vec3f colour;
+  std::vector<float> saturation{};           // of a cloth
+  std::vector<std::array<float, 2>> uv{};
 };
 
 // One cubic piece of a yarn: it spans some steps of the yarn's centre line.
@@ -82,6 +84,7 @@ struct RayScene::Parts {
   Scene solids, liquid;
   DrawnYarns yarns;
   std::vector<DrawnSolid> drawn_solids;
+  std::vector<DrawnCloth> cloths;
   Vec3f up{0, 0, 1};  // of the cloth
   std::vector<SolidPart> parts;
   DrawnMesh liquid_mesh;
@@ -112,6 +115,7 @@ bool RayScene::Parts::stands_still(const Frame& frame) const {
       frame.yarns.first_point != yarns.first_point || frame.yarns.radius != yarns.radius ||
       frame.yarns.colour != yarns.colour || frame.up != up)
     return false;
+  if (!frame.cloths.empty() || !cloths.empty()) return false;  // they move in nearly every frame
   // Solids are fixed in every scene; a frame that brings meshes of its own is drawn anew.
   return std::all_of(frame.solids.begin(), frame.solids.end(), [&](const DrawnSolid& solid) {
     const DrawnSolid& before = drawn_solids[static_cast<std::size_t>(&solid - frame.solids.data())];
@@ -128,6 +132,8 @@ void RayScene::Parts::build_solids() {
     DrawnMesh mesh = solid.mesh.triangles.empty() ? mesh_of(solid.shape) : solid.mesh;
     if (!mesh.triangles.empty()) parts.push_back({std::move(mesh), solid.colour});
   }
+  for (const DrawnCloth& cloth : cloths)
+    if (!cloth.mesh.triangles.empty()) parts.push_back({cloth.mesh, cloth.colour, cloth.saturation, cloth.uv});
   for (unsigned i = 0; i < parts.size(); ++i) attach_mesh(device.get(), solids.get(), parts[i].mesh, i);
   if (yarns.yarns() > 0) prepare_yarns();
   yarn_geometry = end_geometry = RTC_INVALID_GEOMETRY_ID;
@@ -268,6 +274,7 @@ bool RayScene::update(const Frame& frame) {
   } else {
     parts.yarns = frame.yarns;
     parts.drawn_solids = frame.solids;
+    parts.cloths = frame.cloths;
     parts.up = frame.up;
     parts.build_solids();
     Bounds all = bounds_of_cloth(frame);
@@ -298,6 +305,16 @@ bool RayScene::meets_solid(const Ray& ray, float limit, SolidHit& hit) const {
     const SolidPart& part = parts_->parts[found.hit.geomID];
     hit.normal = facing(mesh_normal(part.mesh, found.hit), ray.direction);
     hit.colour = part.colour;
+    if (!part.saturation.empty()) {
+      const auto& t = part.mesh.triangles[found.hit.primID];
+      const float a = 1 - found.hit.u - found.hit.v, b = found.hit.u, c = found.hit.v;
+      hit.cloth = true;
+      hit.saturation = a * part.saturation[t[0]] + b * part.saturation[t[1]] + c * part.saturation[t[2]];
+      if (!part.uv.empty()) {
+        hit.u = a * part.uv[t[0]][0] + b * part.uv[t[1]][0] + c * part.uv[t[2]][0];
+        hit.v = a * part.uv[t[0]][1] + b * part.uv[t[1]][1] + c * part.uv[t[2]][1];
+      }
+    }
   }
   return true;
 }

@@ -19,6 +19,8 @@ struct SolidHit {
   Vec3f flat_normal;  // of the geometry itself, same side
   bool yarn = false;
   bool cut_end = false;  // of a yarn
+  bool cloth = false;    // a cloth drawn as a surface
+  float u = 0, v = 0;    // m, cloth: where in it
   Vec3f colour;       // linear RGB, dry
   float saturation = 0;   // interpolated
   Index point = no_index; // of the yarns, the nearest before the hit; point + 1 is the nearest after it

@@ -33,14 +33,20 @@ RunFrames open_run_frames(const std::filesystem::path& folder, const World& worl
   run.folder = folder;
   run.start = frame_from_world(world, title);
   run.start.particles.clear();
-  run.collections.push_back({"", 0, 0, read_pvd(folder / "liquid.pvd")});
+  run.collections.push_back({.textile = "", .entries = read_pvd(folder / "liquid.pvd")});
   const std::vector<std::string> stems = collection_stems(world);  // liquid, then yarns and pores of each textile
   std::size_t first = 0;
   for (std::size_t i = 0; i < world.textiles.size(); ++i) {
     const Textile& textile = world.textiles[i];
     const std::size_t points = textile.fabric->network.points.size();
-    run.collections.push_back({textile.name, first, points, read_pvd(folder / (stems[1 + 2 * i] + ".pvd"))});
+    run.collections.push_back({.textile = textile.name, .first_point = first, .points = points,
+                               .entries = read_pvd(folder / (stems[1 + 2 * i] + ".pvd"))});
     first += points;
+  }
+  for (std::size_t i = 0; i < world.cell_cloths.size(); ++i) {
+    const CellCloth& cloth = world.cell_cloths[i];
+    run.collections.push_back({.textile = cloth.name, .cloth = i, .points = cloth.soft.sheet.size(),
+                               .entries = read_pvd(folder / (stems[1 + 2 * world.textiles.size() + i] + ".pvd"))});
   }
   for (const RunFrames::Collection& collection : run.collections)
     for (const PvdEntry& entry : collection.entries) run.times.push_back(entry.time_s);
@@ -67,6 +73,13 @@ Frame read_frame(const RunFrames& run, std::size_t number) {
     const std::vector<float>* saturation = find_floats(data, "saturation");
     if (!saturation || data.points.size() != collection.points)
       throw InputError(file.string() + ": the file does not belong to this scene's textile " + collection.textile);
+    if (collection.cloth != RunFrames::no_cloth) {
+      DrawnCloth& cloth = frame.cloths[collection.cloth];
+      cloth.mesh.vertices = std::move(data.points);
+      set_normals(cloth.mesh);
+      cloth.saturation = *saturation;
+      continue;
+    }
     std::copy(data.points.begin(), data.points.end(), frame.yarns.points.begin() + static_cast<std::ptrdiff_t>(collection.first_point));
     std::copy(saturation->begin(), saturation->end(),
               frame.yarns.saturation.begin() + static_cast<std::ptrdiff_t>(collection.first_point));

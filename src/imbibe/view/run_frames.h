@@ -17,10 +17,12 @@ struct RunFrames {
   std::filesystem::path folder;
   Frame start;                        // everything that does not change; of the world before the run
   std::vector<Real> times;            // s, of the outputs
+  static constexpr std::size_t no_cloth = std::size_t(-1);
   struct Collection {
-    std::string textile;              // "" = liquid
+    std::string textile{};            // "" = liquid
+    std::size_t cloth = no_cloth;     // in start.cloths
     std::size_t first_point = 0, points = 0;  // of the textile in start.yarns
-    std::vector<PvdEntry> entries;
+    std::vector<PvdEntry> entries{};
   };
   std::vector<Collection> collections;
 };

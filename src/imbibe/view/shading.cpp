@@ -162,6 +162,16 @@ void touch(std::vector<Index>& touched, Index point) {
 Surface surface_of(const Trace& trace, const Ray& ray, const SolidHit& hit) {
   const Look& look = trace.look;
   Surface s{ray.origin + ray.direction * hit.distance, hit.normal, hit.flat_normal, hit.colour, 0};
+  if (hit.cloth) {
+    if (look.style == PictureStyle::diagram) {
+      const Vec3f shown = over(colour_of_saturation(std::clamp(hit.saturation, 0.0f, 1.0f)), {1, 1, 1});
+      s.colour = Vec3f{linear_from_srgb(shown.x), linear_from_srgb(shown.y), linear_from_srgb(shown.z)} * 0.97f;
+    } else {
+      s.colour = wet_colour(hit.colour, hit.saturation);
+      s.gloss = 0.6f * smoothstep(0.5f, 1.2f, hit.saturation);
+    }
+    return s;
+  }
   if (!hit.yarn) return s;
   if (look.style == PictureStyle::diagram) {
     touch(trace.touched, hit.nearest);

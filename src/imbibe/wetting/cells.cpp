@@ -51,6 +51,7 @@ struct Mover {
   const CellParams& params;
   const CellSurroundings& around;
   std::vector<Real> saturation{};
+  std::vector<Index> was_in{};
 
   void show_saturations(const CellContents& c) {
     saturation.resize(grid.cells());
@@ -73,12 +74,13 @@ struct Mover {
     return step;
   }
 
-  void move(CellContents& c, Real t) {
+  void move(CellContents& c, Real t, std::vector<CellMove>& moves) {
+    was_in.resize(c.parcels());
     const Drag drag = drag_over(params.resistance, t);
     parallel_for(c.parcels(), [&](std::size_t p) {
       Vec3& x = c.parcel_place[p];
       Vec3& v = c.parcel_velocity[p];
-      const Index cell = grid.cell_at(x.x, x.y);
+      const Index cell = was_in[p] = grid.cell_at(x.x, x.y);
       if (saturation[cell] < params.residual_saturation) {
         v = {};
         return;
@@ -89,6 +91,10 @@ struct Mover {
       v = drag.keep * v + drag.from_speed * a;
       x = kept_inside(grid, x, to, v);
     });
+    for (std::size_t p = 0; p < c.parcels(); ++p) {
+      const Index cell = grid.cell_at(c.parcel_place[p].x, c.parcel_place[p].y);
+      if (cell != was_in[p]) moves.push_back({was_in[p], cell, c.parcel_kg[p]});
+    }
     sum_contents(grid, c);
   }
 };
@@ -289,7 +295,7 @@ CellStepReport step_cells(const CellGrid& grid, const CellParams& params, CellCo
     mover.show_saturations(contents);
     const Real longest = mover.longest(contents, left);
     const Real t = longest >= left ? left : left / std::ceil(left / longest);
-    mover.move(contents, t);
+    mover.move(contents, t, report.moves);
     left = t >= left ? 0 : left - t;
     ++report.sub_steps;
   }

@@ -123,7 +123,13 @@ struct CellLeak {
   Index from = 0, at = 0;          // over-full cell, cell where it comes out
   Real kg = 0;
 };
+// A parcel that changed cell: its mass leaves the one and joins the other.
+struct CellMove {
+  Index from = 0, to = 0;
+  Real kg = 0;
+};
 struct CellStepReport {
+  std::vector<CellMove> moves;     // in the order in which they happened
   Real evaporated_kg = 0;
   int sub_steps = 0;
   std::vector<CellLeak> leaks;     // whole parcels that have left the contents

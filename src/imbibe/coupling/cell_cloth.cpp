@@ -1,0 +1,272 @@
+#include "imbibe/coupling/cell_cloth.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "imbibe/core/error.h"
+#include "imbibe/wetting/evaporation.h"
+
+namespace imbibe {
+namespace {
+
+Vec3 xyz(const Float4& f) { return {f.x, f.y, f.z}; }
+void set(Float4& f, const Vec3& v) {
+  f.x = static_cast<float>(v.x), f.y = static_cast<float>(v.y), f.z = static_cast<float>(v.z);
+}
+
+// Material coordinates of a point of the sheet.
+Vec3 material(const Sheet& sheet, const SurfacePoint& at) {
+  Vec3 m{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index n = sheet.triangles[at.triangle][k];
+    m += at.weight[k] * Vec3{sheet.u[n], sheet.v[n], 0};
+  }
+  return m;
+}
+
+Bounds material_bounds(const Sheet& sheet) {
+  Bounds b;
+  for (std::size_t n = 0; n < sheet.size(); ++n) b.include({sheet.u[n], sheet.v[n], 0});
+  return b;
+}
+
+// Area of the sheet in each cell of a free-form sheet: every triangle is cut into small ones, each counted at its middle.
+void add_areas(const Sheet& sheet, CellGrid& grid) {
+  constexpr int cuts = 8;
+  for (const auto& t : sheet.triangles) {
+    const Vec3 a{sheet.u[t[0]], sheet.v[t[0]], 0}, b{sheet.u[t[1]], sheet.v[t[1]], 0}, c{sheet.u[t[2]], sheet.v[t[2]], 0};
+    const Real part = 0.5 * norm(cross(b - a, c - a)) / (cuts * cuts);
+    for (int i = 0; i < cuts; ++i)
+      for (int j = 0; j < 2 * (cuts - i) - 1; ++j) {
+        const Real third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+        const Real x = (i + third) / cuts, y = (j / 2 + third) / cuts;
+        const Vec3 p = a + x * (b - a) + y * (c - a);
+        grid.area[grid.cell_at(p.x, p.y)] += part;
+      }
+  }
+}
+
+CellGrid free_form_cells(const Sheet& sheet, std::optional<Real> size, Real capacity_per_area) {
+  const Bounds b = material_bounds(sheet);
+  Real area = 0;
+  for (const Real a : node_areas(sheet)) area += a;
+  const Real pitch = size.value_or(std::sqrt(area / static_cast<Real>(sheet.size())));
+  CellGrid grid;
+  const auto fit = [&](Real length) { return std::max(2, static_cast<int>(std::lround(length / pitch))); };
+  grid.columns = fit(b.size().x), grid.rows = fit(b.size().y);
+  grid.pitch_x = b.size().x / grid.columns, grid.pitch_y = b.size().y / grid.rows;
+  grid.first_x = b.lower.x + 0.5 * grid.pitch_x, grid.first_y = b.lower.y + 0.5 * grid.pitch_y;
+  grid.lower_x = b.lower.x, grid.lower_y = b.lower.y, grid.upper_x = b.upper.x, grid.upper_y = b.upper.y;
+  grid.capacity_per_area = capacity_per_area;
+  grid.area.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), 0);
+  add_areas(sheet, grid);
+  return grid;
+}
+
+bool takes(const CellCloth& cloth, Index cell, Real kg) {
+  if (!cloth.params.absorb) return false;
+  // A cell takes a whole particle when at least half of it still has room.
+  return !cloth.params.bounce || cloth.contents.content_kg[cell] + 0.5 * kg <= cloth.grid->capacity(cell);
+}
+
+void absorb(CellCloth& cloth, std::span<const std::uint8_t> held, const Vec3& m, Real kg, const Vec3& velocity) {
+  const std::size_t before = cloth.contents.parcels();
+  add_parcel(*cloth.grid, cloth.contents, m.x, m.y, kg);
+  const Vec3& at = cloth.contents.parcel_place[before];
+  const Index node = (*cloth.node_of_cell)[cloth.grid->cell_at(at.x, at.y)];
+  cloth.soft.liquid_impulse += kg * velocity;
+  merge_into_node(cloth.soft, held, node, kg, velocity);
+  cloth.soft.sheet.added_mass[node] += kg;
+  ++cloth.absorbed_particles;
+}
+
+// Mass that changes node takes its momentum along.
+void carry(CellCloth& cloth, std::span<const std::uint8_t> held, Index from, Index to, Real kg) {
+  const Index a = (*cloth.node_of_cell)[from], b = (*cloth.node_of_cell)[to];
+  if (a == b) return;
+  Sheet& sheet = cloth.soft.sheet;
+  const Vec3 velocity = sheet.velocity[a];
+  sheet.added_mass[a] = std::max(0.0, sheet.added_mass[a] - kg);
+  merge_into_node(cloth.soft, held, b, kg, velocity);
+  sheet.added_mass[b] += kg;
+}
+
+bool is_free(const Particles& particles, const Vec3& place, Real clearance) {
+  return std::none_of(particles.position.begin(), particles.position.end(), [&](const Float4& x) {
+    return squared_norm(xyz(x) - place) < clearance * clearance;
+  });
+}
+
+// Where what leaks at a cell hangs: half a spacing under the sheet there; at a steep or hanging place below the node.
+std::optional<Vec3> birth_place(const CellCloth& cloth, const MovingMesh& surface, Index cell, const Vec3& down,
+                                Real spacing) {
+  const Sheet& sheet = cloth.soft.sheet;
+  const Vec3& x = sheet.position[(*cloth.node_of_cell)[cell]];
+  const Vec3 place = x + 0.6 * spacing * down;
+  // Nothing of the sheet may lie between: from just under the node's own triangles on.
+  const NearestOnSheet near = nearest_on(surface, place);
+  if (near.distance > 0.3 * spacing) return place;
+  const Vec3 moved = near.point + 0.6 * spacing * (dot(near.normal, down) >= 0 ? near.normal : -near.normal);
+  return moved;
+}
+
+void release(CellCloth& cloth, const SoftSheetScratch& scratch, Liquid& liquid, const Vec3& gravity,
+             CellExchangeReport& report) {
+  const Real mass = liquid.particle_mass;
+  if (mass <= 0) return;
+  const Vec3 down = normalized(gravity);
+  for (Index cell = 0; cell < cloth.waiting_kg.size(); ++cell) {
+    while (cloth.waiting_kg[cell] >= mass) {
+      const auto place = birth_place(cloth, scratch.surface, cell, down, liquid.spacing());
+      if (!place || !is_free(liquid.particles, *place, 0.8 * liquid.spacing())) break;
+      const Index node = (*cloth.node_of_cell)[cell];
+      const Vec3 velocity = cloth.soft.sheet.velocity[node];
+      add_particle(liquid, *place, velocity);
+      const Vec3 born = xyz(liquid.particles.velocity.back());
+      // Rounding to single precision is the sheet's: momentum stays whole.
+      cloth.soft.liquid_impulse -= mass * born;
+      cloth.waiting_kg[cell] -= mass;
+      if (cloth.waiting_kg[cell] < 1e-12 * mass) cloth.waiting_kg[cell] = std::max(0.0, cloth.waiting_kg[cell]);
+      cloth.soft.sheet.added_mass[node] = std::max(0.0, cloth.soft.sheet.added_mass[node] - mass);
+      ++cloth.released_particles, ++report.released;
+    }
+  }
+}
+
+}  // namespace
+
+void fit_cells(CellCloth& cloth) {
+  const Sheet& sheet = cloth.soft.sheet;
+  const Real capacity = cloth.params.capacity.value_or(cloth.params.capacity_ratio * sheet.areal_mass);
+  std::vector<Index> nodes;
+  if (sheet.is_grid()) {
+    const Bounds b = material_bounds(sheet);
+    cloth.grid = std::make_shared<const CellGrid>(rectangular_cells(
+        static_cast<int>(sheet.columns), static_cast<int>(sheet.rows), b.size().x, b.size().y, capacity));
+    nodes.resize(sheet.size());
+    std::iota(nodes.begin(), nodes.end(), Index{0});
+  } else {
+    cloth.grid = std::make_shared<const CellGrid>(free_form_cells(sheet, cloth.params.cell_size, capacity));
+    for (Index c = 0; c < cloth.grid->cells(); ++c) {
+      const Vec3 at = cloth.grid->centre(c);
+      nodes.push_back(cloth.grid->area[c] > 0 ? node_nearest(sheet, at.x, at.y) : Index{0});
+    }
+  }
+  cloth.node_of_cell = std::make_shared<const std::vector<Index>>(std::move(nodes));
+  cloth.contents = empty_contents(*cloth.grid);
+  cloth.waiting_kg.assign(cloth.grid->cells(), 0);
+}
+
+Real cell_kg(const CellCloth& cloth) { return total_kg(cloth.contents); }
+Real waiting_kg(const CellCloth& cloth) {
+  return std::accumulate(cloth.waiting_kg.begin(), cloth.waiting_kg.end(), Real{0});
+}
+
+std::vector<float> node_saturation(const CellCloth& cloth) {
+  const Sheet& sheet = cloth.soft.sheet;
+  std::vector<float> s(sheet.size(), 0);
+  for (std::size_t n = 0; n < s.size(); ++n) {
+    const std::size_t cell = sheet.is_grid() ? n : cloth.grid->cell_at(sheet.u[n], sheet.v[n]);
+    s[n] = static_cast<float>(cell_saturation(*cloth.grid, cloth.contents, cell));
+  }
+  return s;
+}
+
+std::vector<Vec3> gravity_along(const Sheet& sheet, const Vec3& gravity) {
+  std::vector<Vec3> sum(sheet.size(), Vec3{});
+  std::vector<Real> area(sheet.size(), 0);
+  for (const auto& t : sheet.triangles) {
+    const Real u1 = sheet.u[t[1]] - sheet.u[t[0]], v1 = sheet.v[t[1]] - sheet.v[t[0]];
+    const Real u2 = sheet.u[t[2]] - sheet.u[t[0]], v2 = sheet.v[t[2]] - sheet.v[t[0]];
+    const Real twice = u1 * v2 - u2 * v1;
+    const Vec3 x1 = sheet.position[t[1]] - sheet.position[t[0]], x2 = sheet.position[t[2]] - sheet.position[t[0]];
+    const Vec3 fu = (v2 * x1 - v1 * x2) / twice, fv = (u1 * x2 - u2 * x1) / twice;  // columns of F
+    const Real uu = dot(fu, fu), uv = dot(fu, fv), vv = dot(fv, fv), det = uu * vv - uv * uv;
+    if (!(det > 1e-12 * uu * vv)) continue;
+    const Real a = dot(fu, gravity), b = dot(fv, gravity);
+    const Vec3 g{(vv * a - uv * b) / det, (uu * b - uv * a) / det, 0};
+    for (const Index n : t) sum[n] += twice * g, area[n] += twice;
+  }
+  for (std::size_t n = 0; n < sum.size(); ++n)
+    if (area[n] != 0) sum[n] = sum[n] / area[n];
+  return sum;
+}
+
+void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, std::span<const Float4> before,
+                    std::span<std::uint8_t> dead, const Vec3& gravity, std::uint64_t seed, std::uint64_t step,
+                    CellExchangeReport& report) {
+  Particles& p = liquid.particles;
+  const Real mass = liquid.particle_mass, dx = liquid.spacing();
+  const Real gap = 0.25 * std::min(cloth.soft.cloth.hand.thickness, 0.2 * dx);
+  const ImpactParams impact{.restitution = cloth.params.restitution, .scatter = cloth.params.scatter,
+                            .rest_speed = 0.5 * std::sqrt(norm(gravity) * dx)};
+  static thread_local std::vector<SheetHit> hits;
+  static thread_local std::vector<std::vector<SheetHit>> tiles;
+  find_sheet_hits(scratch.surface, before.first(p.size()), p.position, hits, tiles);
+  Sheet& sheet = cloth.soft.sheet;
+  for (const SheetHit& hit : hits) {
+    const Index i = hit.particle;
+    if (dead[i]) continue;
+    ++cloth.crossings;
+    const Vec3 m = material(sheet, hit.crossing.at), v = xyz(p.velocity[i]);
+    if (takes(cloth, cloth.grid->cell_at(m.x, m.y), mass)) {
+      absorb(cloth, scratch.held, m, mass - p.owed_kg[i], v);
+      p.owed_kg[i] = 0, dead[i] = 1;
+      ++report.absorbed;
+      continue;
+    }
+    const Vec3 surface_v = velocity_at(sheet, hit.crossing.at);
+    const Vec3 after = velocity_after_impact(v, surface_v, hit.crossing.normal, mass,
+                                             inverse_mass_at(sheet, scratch.held, hit.crossing.at), impact,
+                                             {seed, p.id[i], step});
+    set(p.velocity[i], after);
+    give_impulse(cloth.soft, scratch.held, hit.crossing.at, mass * (v - xyz(p.velocity[i])));
+    set(p.position[i], place_over(scratch.surface, hit.crossing, gap));
+    ++cloth.bounces, ++report.bounced;
+  }
+}
+
+void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Air& air, const Vec3& gravity,
+                     Real dt, CellExchangeReport& report) {
+  const Sheet& sheet = cloth.soft.sheet;
+  const CellGrid& grid = *cloth.grid;
+  if (cloth.contents.parcels() > 0) {
+    const std::vector<Vec3> node_gravity = gravity_along(sheet, gravity);
+    const Vec3 down = normalized(gravity);
+    std::vector<Vec3> along(grid.cells());
+    std::vector<Real> height(grid.cells());
+    for (std::size_t c = 0; c < grid.cells(); ++c) {
+      const Index node = (*cloth.node_of_cell)[c];
+      along[c] = node_gravity[node], height[c] = -dot(down, sheet.position[node]);
+    }
+    const Real evaporation = 2 * evaporation_rate(air, 1, wet_bulb_temperature(air));
+    const CellStepReport cells =
+        step_cells(grid, cloth.params, cloth.contents, {along, height, evaporation}, liquid.particle_mass, dt);
+    report.evaporated_kg += cells.evaporated_kg;
+    for (const CellMove& move : cells.moves) carry(cloth, scratch.held, move.from, move.to, move.kg);
+    for (const CellLeak& leak : cells.leaks) {
+      carry(cloth, scratch.held, leak.from, leak.at, leak.kg);
+      cloth.waiting_kg[leak.at] += leak.kg;
+    }
+  }
+  release(cloth, scratch, liquid, gravity, report);
+  weigh(cloth);
+}
+
+void weigh(CellCloth& cloth) {
+  Sheet& sheet = cloth.soft.sheet;
+  std::fill(sheet.added_mass.begin(), sheet.added_mass.end(), 0);
+  for (Index c = 0; c < cloth.grid->cells(); ++c)
+    sheet.added_mass[(*cloth.node_of_cell)[c]] += cloth.contents.content_kg[c] + cloth.waiting_kg[c];
+  if (cloth.wet.softening > 0 || cloth.wet.damping > 0) {
+    const std::vector<float> s = node_saturation(cloth);
+    for (std::size_t n = 0; n < sheet.size(); ++n) {
+      const Real wet = std::min(1.0f, s[n]);
+      sheet.stiffness_factor[n] = 1 - cloth.wet.softening * wet;
+      sheet.damping_added[n] = cloth.wet.damping * wet;
+    }
+  }
+  wake_if_heavier(cloth.soft);
+}
+
+}  // namespace imbibe

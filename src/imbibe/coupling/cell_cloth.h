@@ -1,0 +1,78 @@
+// Seed B's cloth: a soft (or fixed) sheet whose nodes are cells of liquid (wetting/cells.h), and what the free liquid and
+// it give each other.
+//
+//   arrives   a particle whose way crosses the sheet, or that lies on it: absorbed while the cell has room (a full cell
+//             bounces it, or takes it when `bounce` is off), with all its mass and momentum
+//   moves     parcels carry their mass, and the momentum of the node they leave, to the node they reach
+//   leaks     parcels wait at the cell where they come out until they make a whole particle, born hanging there
+//   weighs    added mass of a node = contents and waiting mass of its cell;  stiffness x (1 - alpha s), damping + beta s
+//
+// alpha wet softening, beta s, s saturation of the cell. Gravity along the cloth, per node the mean over its triangles
+// by area: g_t = (F^T F)^-1 F^T g, F = dx/d(u, v).
+// Tested in tests/coupling/cell_cloth_test.cpp.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "imbibe/coupling/soft_sheet.h"
+#include "imbibe/wetting/cells.h"
+#include "imbibe/wetting/contents.h"
+
+namespace imbibe {
+
+struct WetClothParams {
+  Real softening = 0;  // 1, alpha
+  Real damping = 0;    // s, beta
+};
+
+template <class V>
+void describe(V& v, WetClothParams& p) {
+  v.value("softening", p.softening,
+          {.min = 0, .max = 0.95, .help = "share of the stiffness lost when full: viscose 0.5, wool 0.4, nylon 0.2, cotton 0"});
+  v.value("damping", p.damping, {.unit = "s", .shown = "ms", .min = 0, .max = 1, .help = "inner damping added when full"});
+}
+
+struct CellCloth {
+  std::string name;
+  SoftSheet soft;
+  std::shared_ptr<const CellGrid> grid;
+  std::shared_ptr<const std::vector<Index>> node_of_cell;  // on a grid sheet: the cell's own number
+  CellParams params;
+  WetClothParams wet;
+  Vector3<float> colour{0.80f, 0.74f, 0.62f};  // linear RGB when dry
+  CellContents contents;            // state
+  std::vector<Real> waiting_kg;     // per cell: leaked, not yet a particle (state)
+  std::uint64_t absorbed_particles = 0, bounces = 0, released_particles = 0, crossings = 0;  // state
+};
+
+// Sets the grid, empty contents and the map to nodes for a sheet whose params and soft part are set.
+void fit_cells(CellCloth& cloth);
+
+Real cell_kg(const CellCloth& cloth);      // in cells
+Real waiting_kg(const CellCloth& cloth);   // leaked, not yet free
+
+// Contents of the cells over their capacity, per node of the sheet (for pictures and files).
+std::vector<float> node_saturation(const CellCloth& cloth);
+
+// Gravity along the cloth per node, m/s2 along (u, v).
+std::vector<Vec3> gravity_along(const Sheet& sheet, const Vec3& gravity);
+
+struct CellExchangeReport {
+  std::size_t absorbed = 0, bounced = 0, released = 0, put_back = 0;
+  Real evaporated_kg = 0;
+};
+
+// The liquid's particles against the sheet's last step: those that crossed it are absorbed (dead[i] = 1) or thrown back.
+void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, std::span<const Float4> before,
+                    std::span<std::uint8_t> dead, const Vec3& gravity, std::uint64_t seed, std::uint64_t step,
+                    CellExchangeReport& report);
+
+// The cells for dt, then whole particles for what has leaked.
+void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Air& air, const Vec3& gravity,
+                     Real dt, CellExchangeReport& report);
+
+// Added mass, stiffness and damping of the nodes from what their cells hold.
+void weigh(CellCloth& cloth);
+
+}  // namespace imbibe

@@ -1,0 +1,174 @@
+#include "imbibe/coupling/soft_sheet.h"
+
+#include <algorithm>
+
+#include "imbibe/core/parallel.h"
+#include "imbibe/geometry/sampling.h"
+
+namespace imbibe {
+namespace {
+
+constexpr Real calm_speed = 1e-3;  // m/s, root mean square, below which a sheet counts as still
+constexpr Real calm_time = 0.5;    // s of it until it rests
+
+Vec3 xyz(const Float4& f) { return {f.x, f.y, f.z}; }
+
+// d turned by a random angle up to `most` about a random axis square to it.
+Vec3 turned(const Vec3& d, Real most, const RandomCounter& random) {
+  const Real angle = most * uniform(random, 0), around = 2 * pi * uniform(random, 1);
+  const Vec3 helper = std::abs(d.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
+  const Vec3 a = normalized(cross(d, helper)), b = cross(d, a);
+  return std::cos(angle) * d + std::sin(angle) * (std::cos(around) * a + std::sin(around) * b);
+}
+
+bool may_rest(const SoftSheet& soft) {
+  const ClothParams& c = soft.cloth;
+  if (c.air.density > 0 && squared_norm(c.air.wind) > 0) return false;
+  for (const PinPath& path : soft.sheet.pin_paths)
+    if (!path.keys.empty() && path.keys.back().time > soft.sheet.time) return false;
+  for (const Pin& pin : soft.sheet.pins)
+    if (std::isfinite(pin.until) && pin.until > soft.sheet.time) return false;
+  return true;
+}
+
+void judge_rest(SoftSheet& soft, Real dt) {
+  const Real mass = total_mass(soft.sheet);
+  const bool still = kinetic_energy(soft.sheet) < 0.5 * mass * calm_speed * calm_speed && may_rest(soft);
+  soft.calm_s = still ? soft.calm_s + dt : 0;
+  if (soft.calm_s < calm_time) return;
+  soft.at_rest = true;
+  soft.mass_at_rest = mass;
+  std::fill(soft.sheet.velocity.begin(), soft.sheet.velocity.end(), Vec3{});
+}
+
+}  // namespace
+
+void find_held(const Sheet& sheet, std::vector<std::uint8_t>& held) {
+  held.assign(sheet.size(), sheet.fixed ? 1 : 0);
+  for (const Pin& pin : sheet.pins)
+    if (pin.until > sheet.time) held[pin.node] = 1;
+}
+
+Vec3 velocity_at(const Sheet& sheet, const SurfacePoint& at) {
+  const auto& t = sheet.triangles[at.triangle];
+  return at.weight[0] * sheet.velocity[t[0]] + at.weight[1] * sheet.velocity[t[1]] + at.weight[2] * sheet.velocity[t[2]];
+}
+
+Vec3 position_at(const Sheet& sheet, const SurfacePoint& at) {
+  const auto& t = sheet.triangles[at.triangle];
+  return at.weight[0] * sheet.position[t[0]] + at.weight[1] * sheet.position[t[1]] + at.weight[2] * sheet.position[t[2]];
+}
+
+Real inverse_mass_at(const Sheet& sheet, std::span<const std::uint8_t> held, const SurfacePoint& at) {
+  Real sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index node = sheet.triangles[at.triangle][k];
+    if (!held[node]) sum += at.weight[k] * at.weight[k] / sheet.mass(node);
+  }
+  return sum;
+}
+
+void give_impulse(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, const Vec3& impulse) {
+  Sheet& sheet = soft.sheet;
+  soft.liquid_impulse += impulse;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index node = sheet.triangles[at.triangle][k];
+    const Vec3 part = at.weight[k] * impulse;
+    if (held[node]) soft.support_impulse -= part;
+    else sheet.velocity[node] += part / sheet.mass(node);
+  }
+}
+
+void merge_into_node(SoftSheet& soft, std::span<const std::uint8_t> held, Index node, Real kg, const Vec3& velocity) {
+  Sheet& sheet = soft.sheet;
+  Vec3& v = sheet.velocity[node];
+  if (held[node]) {
+    soft.support_impulse -= kg * (velocity - v);
+    return;
+  }
+  const Real mass = sheet.mass(node);
+  v = (mass * v + kg * velocity) / (mass + kg);
+}
+
+Vec3 velocity_after_impact(const Vec3& velocity, const Vec3& v_surface, const Vec3& n, Real particle_mass,
+                           Real surface_inverse_mass, const ImpactParams& params, const RandomCounter& random) {
+  const Vec3 relative = velocity - v_surface;
+  const Real approach = -dot(relative, n);
+  if (approach <= 0) return velocity;
+  const Real effective = 1 / (1 / particle_mass + surface_inverse_mass);
+  Vec3 wanted;
+  if (approach < params.rest_speed) {
+    const Vec3 along = relative + approach * n;
+    const Real speed = norm(along);
+    wanted = speed > 0 ? along * (1 - std::min(1.0, params.friction * approach / speed)) : Vec3{};
+  } else {
+    const Vec3 reflected = relative + 2 * approach * n;
+    Vec3 d = turned(normalized(reflected), params.scatter, random);
+    if (dot(d, n) < 0) d -= 2 * dot(d, n) * n;
+    wanted = params.restitution * norm(relative) * d;
+  }
+  return velocity + (effective / particle_mass) * (wanted - relative);
+}
+
+void find_sheet_hits(const MovingMesh& surface, std::span<const Float4> before, std::span<const Float4> now,
+                     std::vector<SheetHit>& hits, std::vector<std::vector<SheetHit>>& tiles) {
+  hits.clear();
+  if (surface.empty()) return;
+  const std::size_t count = now.size();
+  tiles.resize((count + default_tile - 1) / default_tile);
+  Bounds all = surface.swept.nodes[0].bounds;
+  all.grow(1e-9);
+  parallel_tiles(count, [&](std::size_t begin, std::size_t end) {
+    std::vector<SheetHit>& found = tiles[begin / default_tile];
+    found.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 p0 = xyz(before[i]), p1 = xyz(now[i]);
+      Bounds way;
+      way.include(p0), way.include(p1);
+      if (!all.overlaps(way)) continue;
+      if (const auto crossing = first_crossing(surface, p0, p1)) found.push_back({static_cast<Index>(i), *crossing});
+    }
+  });
+  for (const auto& tile : tiles) hits.insert(hits.end(), tile.begin(), tile.end());
+}
+
+Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real gap) {
+  const auto& v = surface.mesh.triangles[crossing.at.triangle];
+  const auto& x = surface.mesh.vertices;
+  const auto& w = crossing.at.weight;
+  const Vec3 at = w[0] * x[v[0]] + w[1] * x[v[1]] + w[2] * x[v[2]];
+  Vec3 n = normalized(cross(x[v[1]] - x[v[0]], x[v[2]] - x[v[0]]));
+  // The side it came from, as the triangle's own normal at the time of the crossing tells.
+  const auto& s = surface.start;
+  const Real t = crossing.time_fraction;
+  const auto then = [&](std::size_t k) { return s[v[k]] + t * (x[v[k]] - s[v[k]]); };
+  if (dot(crossing.normal, cross(then(1) - then(0), then(2) - then(0))) < 0) n = -n;
+  return at + gap * n;
+}
+
+ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
+                              std::span<const ClothSolid> solids, Real dt) {
+  ClothStepReport report;
+  Sheet& sheet = soft.sheet;
+  scratch.before = sheet.position;
+  if (soft.moves()) {
+    report = step_cloth(sheet, soft.cloth, {.force = scratch.force, .gravity = gravity, .solids = solids}, dt, scratch.cloth);
+    soft.support_impulse += report.pin_impulse;
+    judge_rest(soft, dt);
+  } else {
+    sheet.time += dt;
+  }
+  set_step(scratch.surface, scratch.before, sheet.position, sheet.triangles);
+  find_held(sheet, scratch.held);
+  return report;
+}
+
+void wake_if_heavier(SoftSheet& soft, Real share) {
+  if (!soft.at_rest) return;
+  const Real mass = total_mass(soft.sheet);
+  if (std::abs(mass - soft.mass_at_rest) <= share * soft.mass_at_rest) return;
+  soft.at_rest = false;
+  soft.calm_s = 0;
+}
+
+}  // namespace imbibe

@@ -1,0 +1,88 @@
+// A soft sheet as the liquid meets it: the cloth's state, the surface over the last step, and the books of its supports.
+//
+//   impulse at a point of a triangle  v_k += w_k J/m_k        w weights of the corners; a held node's part goes to its support
+//   inverse mass felt there           1/m_s = sum_k w_k^2/m_k over the nodes that are free
+//   impact  v' = v_s + e |v - v_s| d,  J = m_eff (v' - v rel.),  1/m_eff = 1/m_p + 1/m_s
+//           d: R = V - 2 (V.N) N turned by a random angle up to `scatter`, away from the sheet    (seed B 5.6, e = 1)
+//   absorbed particle  v_k' = (m_k v_k + m_p v_p)/(m_k + m_p)
+// The relative speed never grows, so neither does the energy: dE = m_eff/2 (e^2 - 1) |V|^2.
+// Momentum: what a particle loses, as stored, is what the sheet and its supports get, to rounding of doubles.
+// Tested in tests/coupling/soft_sheet_test.cpp.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "imbibe/cloth/cloth_step.h"
+#include "imbibe/core/random.h"
+#include "imbibe/geometry/moving_mesh.h"
+#include "imbibe/liquid/particles.h"
+
+namespace imbibe {
+
+struct SoftSheet {
+  Sheet sheet;
+  ClothParams cloth;
+  Real contact_angle = pi / 2;    // rad, of the liquid on the sheet's faces
+  Vec3 support_impulse{};         // N s, given to the sheet by its pins since the start (state)
+  Vec3 liquid_impulse{};          // N s, given to the sheet by free liquid since the start (state)
+  Real calm_s = 0;                // s for which it has hardly moved (state)
+  Real mass_at_rest = 0;          // kg, when it came to rest (state)
+  bool at_rest = false;           // it is not stepped until something changes (state)
+  bool moves() const { return !sheet.fixed && !at_rest; }
+};
+
+// Work space and caches of one sheet; not state.
+struct SoftSheetScratch {
+  ClothScratch cloth;
+  MovingMesh surface;             // over the last step
+  std::vector<Vec3> before;       // positions before it
+  std::vector<Vec3> force;        // N per node, of the liquid
+  std::vector<std::uint8_t> held;  // per node: a support holds it
+};
+
+// Which nodes supports hold at the sheet's time.
+void find_held(const Sheet& sheet, std::vector<std::uint8_t>& held);
+
+Vec3 velocity_at(const Sheet& sheet, const SurfacePoint& at);
+Vec3 position_at(const Sheet& sheet, const SurfacePoint& at);
+Real inverse_mass_at(const Sheet& sheet, std::span<const std::uint8_t> held, const SurfacePoint& at);
+// A particle on a sheet that does not move, or held at all corners, meets an infinite mass (0).
+
+// J in N s at a point of the sheet. What held nodes get goes to their supports at once: support_impulse -= their part.
+void give_impulse(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, const Vec3& impulse);
+
+// Mass m with velocity v joins node k for good: momentum kept. The caller sets added_mass to include it afterwards.
+void merge_into_node(SoftSheet& soft, std::span<const std::uint8_t> held, Index node, Real kg, const Vec3& velocity);
+
+struct ImpactParams {
+  Real restitution = 0.3;  // e, of the speed
+  Real scatter = 0.35;     // rad
+  Real friction = 0.3;     // Coulomb, of a particle that stays
+  Real rest_speed = 0.02;  // m/s: slower approaches do not bounce but stay on the face
+};
+
+// Velocity of a particle after it met a surface that moves with v_surface; n unit, towards the particle.
+Vec3 velocity_after_impact(const Vec3& velocity, const Vec3& v_surface, const Vec3& n, Real particle_mass,
+                           Real surface_inverse_mass, const ImpactParams& params, const RandomCounter& random);
+
+struct SheetHit {
+  Index particle = no_index;
+  MovingCrossing crossing;
+};
+// Particles whose way from `before` to `now` crosses the sheet in its last step, by rising particle.
+void find_sheet_hits(const MovingMesh& surface, std::span<const Float4> before, std::span<const Float4> now,
+                     std::vector<SheetHit>& hits, std::vector<std::vector<SheetHit>>& tiles);
+
+// Puts a particle that crossed back: onto the material point it met, `gap` over the face it came from, so that no other
+// layer lies between. Returns its place.
+Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real gap);
+
+// Steps the cloth under the liquid's forces and the rest; sets scratch.surface. A sheet at rest or fixed costs nothing.
+ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
+                              std::span<const ClothSolid> solids, Real dt);
+
+// Wakes a resting sheet whose mass has changed by more than `share`.
+void wake_if_heavier(SoftSheet& soft, Real share = 0.002);
+
+}  // namespace imbibe
