@@ -125,15 +125,6 @@ TEST(BadScene, AWordThatIsNoChoiceListsTheChoices) {
              "textiles[0].wetting.network.model", "did you mean 'physical'?");
 }
 
-TEST(BadScene, ASoftSheetIsRefusedWithTheReason) {
-  expect_one(problems_of(with_line(16, "    sheet: soft")), 16, 12, "textiles[0].sheet.kind",
-             "not available in this version");
-  expect_one(problems_of(with_line(16, "    sheet: {soft: {thickness: 1 mm}}")), 16, 13, "textiles[0].sheet.soft",
-             "not available in this version");
-  expect_one(problems_of(with_line(17, "    wetting: cells")), 17, 14, "textiles[0].wetting.kind",
-             "not available in this version");
-}
-
 TEST(BadScene, TwoTextilesOfOneNameAreRefused) {
   expect_one(problems_of(std::string(small_scene) +
                          "  - name: swatch\n"

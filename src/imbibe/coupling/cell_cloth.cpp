@@ -226,6 +226,37 @@ void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid,
   }
 }
 
+namespace {
+
+// Liquid that lies on the sheet without crossing it: the liquid's solver holds it up.
+constexpr Real touch_spacings = 0.75;
+
+}  // namespace
+
+void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, std::span<std::uint8_t> dead,
+                     const Vec3& gravity, CellExchangeReport& report) {
+  if (!cloth.params.absorb || scratch.surface.empty()) return;
+  Particles& p = liquid.particles;
+  const Real reach = touch_spacings * liquid.spacing() + 0.5 * cloth.soft.cloth.hand.thickness;
+  Bounds near_sheet = scratch.surface.at_end.nodes[0].bounds;
+  near_sheet.grow(reach);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec3 x = xyz(p.position[i]);
+    if (dead[i] || !near_sheet.contains(x)) continue;
+    const NearestOnSheet near = nearest_on(scratch.surface, x, reach);
+    if (near.at.triangle == no_index || near.on_border) continue;
+    // What hangs under the sheet or flies off is leaving it.
+    if (dot(near.normal, gravity) > 0 ||
+        dot(near.normal, xyz(p.velocity[i]) - velocity_at(cloth.soft.sheet, near.at)) > 0.5 * std::sqrt(norm(gravity) * liquid.spacing()))
+      continue;
+    const Vec3 m = material(cloth.soft.sheet, near.at);
+    if (!takes(cloth, cloth.grid->cell_at(m.x, m.y), liquid.particle_mass)) continue;
+    absorb(cloth, scratch.held, m, liquid.particle_mass - p.owed_kg[i], xyz(p.velocity[i]));
+    p.owed_kg[i] = 0, dead[i] = 1;
+    ++report.absorbed;
+  }
+}
+
 void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Air& air, const Vec3& gravity,
                      Real dt, CellExchangeReport& report) {
   const Sheet& sheet = cloth.soft.sheet;

@@ -68,6 +68,10 @@ void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid,
                     std::span<std::uint8_t> dead, const Vec3& gravity, std::uint64_t seed, std::uint64_t step,
                     CellExchangeReport& report);
 
+// Particles that lie on the sheet, within three quarters of a spacing, are absorbed while their cell has room.
+void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, std::span<std::uint8_t> dead,
+                     const Vec3& gravity, CellExchangeReport& report);
+
 // The cells for dt, then whole particles for what has leaked.
 void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Air& air, const Vec3& gravity,
                      Real dt, CellExchangeReport& report);

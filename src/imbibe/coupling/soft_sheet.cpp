@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/geometry/sampling.h"
 
 namespace imbibe {
@@ -10,6 +11,8 @@ namespace {
 
 constexpr Real calm_speed = 1e-3;  // m/s, root mean square, below which a sheet counts as still
 constexpr Real calm_time = 0.5;    // s of it until it rests
+constexpr Real standard_gravity = 9.81;
+constexpr Real least_waking_share = 0.01;  // of its weight: a force of the liquid that moves a resting sheet again
 
 Vec3 xyz(const Float4& f) { return {f.x, f.y, f.z}; }
 
@@ -18,7 +21,7 @@ Vec3 turned(const Vec3& d, Real most, const RandomCounter& random) {
   const Real angle = most * uniform(random, 0), around = 2 * pi * uniform(random, 1);
   const Vec3 helper = std::abs(d.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
   const Vec3 a = normalized(cross(d, helper)), b = cross(d, a);
-  return std::cos(angle) * d + std::sin(angle) * (std::cos(around) * a + std::sin(around) * b);
+  return portable::cos(angle) * d + portable::sin(angle) * (portable::cos(around) * a + portable::sin(around) * b);
 }
 
 bool may_rest(const SoftSheet& soft) {
@@ -146,18 +149,54 @@ Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real 
   return at + gap * n;
 }
 
+Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
+  const Sheet& sheet = soft.sheet;
+  if (scratch.surface.empty()) set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+  find_held(sheet, scratch.held);
+  scratch.inverse_mass.resize(sheet.size());
+  for (std::size_t n = 0; n < sheet.size(); ++n)
+    scratch.inverse_mass[n] = scratch.held[n] || !soft.moves() ? 0 : 1 / sheet.mass(n);
+  scratch.wall.surface = &scratch.surface;
+  scratch.wall.velocity = sheet.velocity;
+  scratch.wall.inverse_mass = scratch.inverse_mass;
+  scratch.wall.half_thickness = 0.5 * soft.cloth.hand.thickness;
+  scratch.wall.impulse.assign(sheet.size(), Vec3{});
+  Wall wall;
+  wall.two_sided = true;
+  wall.sheet = &scratch.wall;
+  wall.material.contact_angle = soft.contact_angle;
+  return wall;
+}
+
+void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, Real dt) {
+  const std::vector<Vec3>& impulse = scratch.wall.impulse;
+  Vec3 sum{};
+  for (const Vec3& j : impulse) sum += j;
+  soft.liquid_impulse += sum;
+  const Real weight = total_mass(soft.sheet) * standard_gravity;
+  if (soft.at_rest && norm(sum) > least_waking_share * weight * dt) soft.at_rest = false, soft.calm_s = 0;
+  if (!soft.moves()) {
+    soft.support_impulse -= sum;
+    scratch.force.clear();
+    return;
+  }
+  scratch.force.resize(impulse.size());
+  for (std::size_t n = 0; n < impulse.size(); ++n) scratch.force[n] = impulse[n] / dt;
+}
+
 ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
                               std::span<const ClothSolid> solids, Real dt) {
   ClothStepReport report;
   Sheet& sheet = soft.sheet;
   scratch.before = sheet.position;
   if (soft.moves()) {
-    report = step_cloth(sheet, soft.cloth, {.force = scratch.force, .gravity = gravity, .solids = solids}, dt, scratch.cloth);
+    report = step_cloth(sheet, soft.cloth, {.force = scratch.force, .gravity = gravity, .solids = solids, .measure = false}, dt, scratch.cloth);
     soft.support_impulse += report.pin_impulse;
     judge_rest(soft, dt);
   } else {
     sheet.time += dt;
   }
+  scratch.force.clear();
   set_step(scratch.surface, scratch.before, sheet.position, sheet.triangles);
   find_held(sheet, scratch.held);
   return report;

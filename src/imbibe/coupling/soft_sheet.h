@@ -16,7 +16,9 @@
 #include "imbibe/cloth/cloth_step.h"
 #include "imbibe/core/random.h"
 #include "imbibe/geometry/moving_mesh.h"
+#include "imbibe/liquid/wall.h"
 #include "imbibe/liquid/particles.h"
+#include "imbibe/liquid/sheet_wall.h"
 
 namespace imbibe {
 
@@ -39,6 +41,8 @@ struct SoftSheetScratch {
   std::vector<Vec3> before;       // positions before it
   std::vector<Vec3> force;        // N per node, of the liquid
   std::vector<std::uint8_t> held;  // per node: a support holds it
+  std::vector<Real> inverse_mass;  // 1/kg per node, 0: held
+  SheetWall wall;                  // what the liquid's solver sees of it
 };
 
 // Which nodes supports hold at the sheet's time.
@@ -77,6 +81,11 @@ void find_sheet_hits(const MovingMesh& surface, std::span<const Float4> before, 
 // Puts a particle that crossed back: onto the material point it met, `gap` over the face it came from, so that no other
 // layer lies between. Returns its place.
 Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real gap);
+
+// The sheet as a wall for the liquid's next step, and afterwards: what the liquid gave it becomes a load of the cloth's
+// step of the same length.
+Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch);
+void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, Real dt);
 
 // Steps the cloth under the liquid's forces and the rest; sets scratch.surface. A sheet at rest or fixed costs nothing.
 ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,

@@ -137,9 +137,18 @@ std::optional<MovingCrossing> first_crossing(const MovingMesh& m, const Vec3& p0
   return best;
 }
 
-NearestOnSheet nearest_on(const MovingMesh& m, const Vec3& p) {
+NearestOnSheet nearest_on(const MovingMesh& m, const Vec3& p, Real limit) {
   NearestOnSheet n;
-  const MeshPoint near = closest_point(m.at_end, m.mesh, p);
+  MeshPoint near;
+  Real best = limit * limit;
+  QueryCounts counts;
+  visit_nearest(m.at_end, p, best, counts, [&](Index t) {
+    const TrianglePoint at = closest_on_triangle(p, m.mesh.corner(t, 0), m.mesh.corner(t, 1), m.mesh.corner(t, 2));
+    const Real square = squared_norm(p - at.point);
+    if (square > best || (square == near.squared_distance && t > near.triangle)) return;
+    best = square;
+    near = {t, at.feature, at.point, square};
+  });
   if (near.triangle == no_index) return n;
   const auto& v = m.mesh.triangles[near.triangle];
   const Vec3 &a = m.mesh.vertices[v[0]], &b = m.mesh.vertices[v[1]], &c = m.mesh.vertices[v[2]];

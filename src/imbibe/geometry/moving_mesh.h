@@ -61,7 +61,9 @@ struct NearestOnSheet {
   Real side = 1;           // +1 on the side of the triangles' normals, -1 behind
   bool on_border = false;  // the nearest point lies on the outline of the surface: p is beside it
 };
-NearestOnSheet nearest_on(const MovingMesh& moving, const Vec3& p);
+// Nothing nearer than `limit` (m): at.triangle is no_index.
+NearestOnSheet nearest_on(const MovingMesh& moving, const Vec3& p,
+                          Real limit = std::numeric_limits<Real>::infinity());
 
 // Weights of the point of a triangle's plane nearest to p.
 std::array<Real, 3> weights_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);

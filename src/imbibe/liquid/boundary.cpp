@@ -172,6 +172,15 @@ std::vector<PreparedWall> prepared(std::span<const Wall> walls, Real support) {
   std::vector<PreparedWall> result;
   int sheets = 0;
   for (std::size_t k = 0; k < walls.size(); ++k) {
+    if (walls[k].sheet != nullptr) {
+      if (walls[k].sheet->surface->empty()) continue;
+      PreparedWall soft{&walls[k], static_cast<Index>(k), walls[k].sheet->surface->at_end.nodes[0].bounds, false, {}, 0};
+      soft.reach.grow(support + walls[k].sheet->half_thickness);
+      IMBIBE_ASSERT(sheets < 16);
+      soft.sheet_bit = sheets++;
+      result.push_back(soft);
+      continue;
+    }
     IMBIBE_ASSERT(walls[k].shape != nullptr);
     const bool plane = std::holds_alternative<Plane>(*walls[k].shape);
     PreparedWall w{&walls[k], static_cast<Index>(k), plane ? Bounds{} : bounds_of(*walls[k].shape), plane, {}, 0};
@@ -204,11 +213,39 @@ WallAngles angles_of(const WallMaterial& material) {
   return {advancing, material.receding_angle < 0 ? advancing : static_cast<float>(portable::cos(material.receding_angle))};
 }
 
-bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample& out, std::uint32_t& side) {
+// A soft sheet near a particle: a half-space behind its nearest point, on the particle's own side. Beside its outline
+// there is nothing of it.
+bool sample_soft(const PreparedWall& w, const Vec3& p, Real support, SurfaceSample& nearest, SolidSum& sum,
+                 std::uint32_t& side, SheetFoot& foot) {
+  const SheetWall& sheet = *w.wall->sheet;
+  const NearestOnSheet near = nearest_on(*sheet.surface, p, support + sheet.half_thickness);
+  if (near.at.triangle == no_index || near.on_border) return false;
+  nearest = {near.distance - sheet.half_thickness, near.normal};
+  if (nearest.distance >= support) return false;
+  side |= (near.side > 0 ? 1u : 1u << 16) << w.sheet_bit;
+  SlabProduct product;
+  product.add(half_space_integral(nearest.distance, support), near.normal);
+  sum = product.sum();
+  foot = {};
+  foot.wall = w.index;
+  foot.node = sheet.surface->mesh.triangles[near.at.triangle];
+  Vec3 velocity{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    foot.weight[c] = static_cast<float>(near.at.weight[c]);
+    velocity += near.at.weight[c] * sheet.velocity[foot.node[c]];
+  }
+  foot.velocity = Vec3f(velocity);
+  return true;
+}
+
+bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample& out, std::uint32_t& side,
+                 SheetFoot& foot) {
   if (!w.everywhere && !w.reach.contains(p)) return false;
   SurfaceSample nearest;
   SolidSum sum;
-  if (w.sheet) {
+  if (w.wall->sheet != nullptr) {
+    if (!sample_soft(w, p, support, nearest, sum, side, foot)) return false;
+  } else if (w.sheet) {
     const SheetPlace at = place_at(*w.sheet, p);
     if (at.facing && at.distance < support) side |= (at.side > 0 ? 1u : 1u << 16) << w.sheet_bit;
     if (at.facing) {
@@ -238,6 +275,7 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample&
                                  half_space_shear(std::max(nearest.distance, nearest_layer), support));
   out.friction = static_cast<float>(wall.material.friction);
   out.wall = w.index;
+  out.foot = no_index;
   return true;
 }
 
@@ -278,22 +316,31 @@ void sample_walls(Boundary& boundary, std::span<const Float4> position, std::siz
                   const Kernel& kernel) {
   static_assert(Boundary::default_tile_size == default_tile);
   const std::vector<PreparedWall> ready = prepared(walls, kernel.support);
-  const bool sheets = std::any_of(ready.begin(), ready.end(), [](const PreparedWall& w) { return w.sheet.has_value(); });
+  const bool sheets = std::any_of(ready.begin(), ready.end(), [](const PreparedWall& w) {
+    return w.sheet.has_value() || w.wall->sheet != nullptr;
+  });
   boundary.tiles.resize((count + default_tile - 1) / default_tile);
   boundary.wall.assign(padded_size(count), Float4{});
   boundary.push.assign(padded_size(count), Float4{});
   boundary.side.resize(sheets ? count : 0);
   boundary.near_walls = parallel_sum(count, [&](std::size_t begin, std::size_t end) {
     Boundary::Tile& tile = boundary.tiles[begin / default_tile];
-    tile.samples.clear();
+    tile.samples.clear(), tile.feet.clear();
     tile.first.assign(1, 0);
     std::size_t near = 0;
     for (std::size_t i = begin; i < end; ++i) {
       NearestSamples found;
       std::uint32_t side = 0;
       WallSample sample;
+      SheetFoot foot;
       for (const PreparedWall& w : ready) {
-        if (sample_wall(w, place(position[i]), kernel.support, sample, side)) found.add(sample);
+        if (!sample_wall(w, place(position[i]), kernel.support, sample, side, foot)) continue;
+        if (w.wall->sheet != nullptr) {
+          foot.particle = static_cast<Index>(i);
+          sample.foot = static_cast<Index>(tile.feet.size());
+          tile.feet.push_back(foot);
+        }
+        found.add(sample);
       }
       if (found.count > 0) found.combine(boundary.wall[i], boundary.push[i]), ++near;
       if (sheets) boundary.side[i] = side;
@@ -302,6 +349,24 @@ void sample_walls(Boundary& boundary, std::span<const Float4> position, std::siz
     }
     return near;
   });
+}
+
+void collect_feet(Boundary& boundary, std::vector<SheetFoot*>& feet) {
+  feet.clear();
+  for (Boundary::Tile& tile : boundary.tiles)
+    for (const WallSample& sample : tile.samples) {
+      if (sample.foot == no_index || squared_norm(sample.push) == 0) continue;
+      SheetFoot& foot = tile.feet[sample.foot];
+      foot.push = sample.push;
+      feet.push_back(&foot);
+    }
+}
+
+void give_feet_impulses(const Boundary& boundary, std::span<const Wall> walls) {
+  for (const Boundary::Tile& tile : boundary.tiles)
+    for (const SheetFoot& foot : tile.feet)
+      for (std::size_t c = 0; c < 3; ++c)
+        walls[foot.wall].sheet->impulse[foot.node[c]] += static_cast<Real>(foot.weight[c]) * foot.impulse;
 }
 
 void add_wall_impulse(const Boundary& boundary, std::span<const float> coefficient, Real scale,
@@ -351,6 +416,7 @@ std::size_t keep_outside(const Boundary& boundary, std::span<const Float4> befor
     for (std::size_t i = begin; i < end; ++i) {
       bool moved = false;
       for (const WallSample& sample : boundary.samples(i)) {
+        if (sample.foot != no_index) continue;  // soft sheets: swept after they have moved too (coupling)
         const Vec3 was = place(before[i]), p = place(position[i]);
         const Real distance = static_cast<Real>(sample.distance) - gap;
         if (distance > 0 && squared_norm(p - was) < distance * distance) continue;  // cannot have reached it

@@ -15,6 +15,7 @@
 #include "imbibe/core/types.h"
 #include "imbibe/liquid/kernel.h"
 #include "imbibe/liquid/particles.h"
+#include "imbibe/liquid/sheet_wall.h"
 #include "imbibe/liquid/wall.h"
 
 namespace imbibe {
@@ -32,12 +33,14 @@ struct WallSample {
   float friction = 0;
   float shear = 0;              // friction * half_space_shear (kernel.h), 1/m2
   Index wall = 0;               // index into the walls of this step
+  Index foot = no_index;        // of a soft sheet: index into the tile's feet
 };
 
 // Cache of one step; nothing here is state.
 struct Boundary {
   struct Tile {
     std::vector<WallSample> samples;
+    std::vector<SheetFoot> feet;         // on soft sheets
     std::vector<std::uint16_t> first;  // per particle of the tile, and one end mark
   };
   std::vector<Tile> tiles;             // of default_tile particles
@@ -56,8 +59,21 @@ struct Boundary {
     const std::size_t k = i % default_tile_size;
     return {t.samples.data() + t.first[k], t.samples.data() + t.first[k + 1]};
   }
+  // Velocity of the wall at a sample of particle i, m/s; and impulse (N s) that the liquid gives it there.
+  Vec3f wall_velocity(std::size_t i, const WallSample& s) const {
+    return s.foot == no_index ? Vec3f{} : tiles[i / default_tile_size].feet[s.foot].velocity;
+  }
+  void give(std::size_t i, const WallSample& s, const Vec3& impulse) {
+    if (s.foot != no_index) tiles[i / default_tile_size].feet[s.foot].impulse += impulse;
+  }
   static constexpr std::size_t default_tile_size = 512;
 };
+
+// The feet on soft sheets of all particles that liquid joins to the sheet, with the pushes that density.h left them.
+void collect_feet(Boundary& boundary, std::vector<SheetFoot*>& feet);
+
+// Impulses of all feet to the nodes of their sheets (SheetWall::impulse), in fixed order.
+void give_feet_impulses(const Boundary& boundary, std::span<const Wall> walls);
 
 // Samples all walls within the support radius of each particle; position: padded, count particles.
 void sample_walls(Boundary& boundary, std::span<const Float4> position, std::size_t count, std::span<const Wall> walls,

@@ -87,6 +87,8 @@ struct LiquidStepReport {
 struct LiquidScratch {
   LiquidFields fields;
   SurfaceScratch surface;
+  SheetContacts sheets;
+  std::vector<SheetWall*> sheet_walls;  // per wall; null for the others
 };
 
 struct LiquidStepBound {

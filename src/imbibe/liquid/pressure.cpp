@@ -1,5 +1,6 @@
 #include "imbibe/liquid/pressure.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace imbibe {
@@ -85,11 +86,16 @@ Sums residual_sums(const LiquidFields& f, std::size_t begin, std::size_t end) {
 }
 
 // residual = D(u)/dt + relaxation (1 - lambda) e/dt^2.
-Sums first_residual(LiquidFields& f, float dt, float relaxation) {
+Sums first_residual(LiquidFields& f, float dt, float relaxation, const SheetContacts* sheets) {
+  if (sheets != nullptr) {
+    f.sheet_rate.assign(f.density_error.size(), 0);
+    sheets->add_rate(f.sheet_rate, 1);
+  }
   const float rate = 1 / dt, density_rate = relaxation / (dt * dt);
   return parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; i += lanes) {
-      const Floats d = compression_rate(f, f.velocity, f.neighbours.slice(i));
+      Floats d = compression_rate(f, f.velocity, f.neighbours.slice(i));
+      if (sheets != nullptr) d -= simd::load(&f.sheet_rate[i]);
       const Floats open = 1 - simd::load4(&f.boundary.wall[i]).w;
       simd::store(&f.source[i], rate * d + density_rate * open * simd::load(&f.density_error[i]));
     }
@@ -98,11 +104,18 @@ Sums first_residual(LiquidFields& f, float dt, float relaxation) {
 }
 
 // applied = A direction; returns direction . A direction.
-double apply_operator(LiquidFields& f) {
+double apply_operator(LiquidFields& f, SheetContacts* sheets) {
   pressure_acceleration(f);
+  if (sheets != nullptr) {
+    std::fill(f.sheet_rate.begin(), f.sheet_rate.end(), 0.0f);
+    sheets->answer(f.position);
+    sheets->add_answer(f.sheet_rate);
+  }
   return parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; i += lanes) {
-      simd::store(&f.applied[i], -compression_rate(f, f.acceleration, f.neighbours.slice(i)));
+      Floats applied = -compression_rate(f, f.acceleration, f.neighbours.slice(i));
+      if (sheets != nullptr) applied += simd::load(&f.sheet_rate[i]);
+      simd::store(&f.applied[i], applied);
     }
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) sum += static_cast<double>(f.position[i].w) * f.applied[i];
@@ -127,8 +140,9 @@ void report_density(const LiquidFields& f, PressureReport& report) {
 }  // namespace
 
 PressureReport project_velocity(LiquidFields& f, const PressureParams& params, Real dt_s, Real relaxation,
-                                std::vector<float>& warm) {
+                                std::vector<float>& warm, SheetContacts* sheets) {
   PressureReport report;
+  if (sheets != nullptr && sheets->empty()) sheets = nullptr;
   if (f.count == 0) return report;
   report_density(f, report);
   const auto dt = static_cast<float>(dt_s);
@@ -140,7 +154,12 @@ PressureReport project_velocity(LiquidFields& f, const PressureParams& params, R
     const Float4& a = f.acceleration[i];
     u = {u.x + dt * a.x, u.y + dt * a.y, u.z + dt * a.z, 0};
   });
-  Sums sums = first_residual(f, dt, static_cast<float>(relaxation));
+  if (sheets != nullptr) {
+    sheets->answer(f.position);
+    sheets->advance(dt_s);
+    sheets->add_diagonal(f.factor);
+  }
+  Sums sums = first_residual(f, dt, static_cast<float>(relaxation), sheets);
   double keep = 0;  // of the last direction
   const auto relative = [&] { return sums.absolute / kept * dt_s * dt_s; };
   while (report.iterations < params.max_iterations && sums.scaled > 0) {
@@ -148,17 +167,19 @@ PressureReport project_velocity(LiquidFields& f, const PressureParams& params, R
     parallel_for(f.count, [&](std::size_t i) {
       f.position[i].w = f.source[i] * f.factor[i] + (keep == 0 ? 0 : static_cast<float>(keep) * f.position[i].w);
     });
-    const double curvature = apply_operator(f);
+    const double curvature = apply_operator(f, sheets);
     if (!(curvature > 0)) break;
     const auto scale = static_cast<float>(sums.scaled / curvature);
     const Sums next = parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
       advance(f, scale, dt, begin, end);
       return residual_sums(f, begin, end);
     });
+    if (sheets != nullptr) sheets->advance(static_cast<Real>(scale) * dt_s);
     keep = next.scaled / sums.scaled;
     sums = next;
     ++report.iterations;
   }
+  if (sheets != nullptr) sheets->book(f.pressure, dt_s);
   report.residual = relative();
   report.converged = report.residual < params.tolerance;
   parallel_for(f.count, [&](std::size_t i) {

@@ -57,7 +57,8 @@ struct PressureReport {
 
 // Changes f.velocity to a divergence-free one; fills f.pressure [Pa] and f.wall_push = 2 k (acceleration by walls is
 // -wall_push P). warm: k of the last step per particle, in and out. relaxation = dt/tau in (0, 1].
+// sheets: soft sheets that move and give way (sheet_wall.h), their impulse booked at their feet; none: all walls stand.
 PressureReport project_velocity(LiquidFields& f, const PressureParams& params, Real dt, Real relaxation,
-                                std::vector<float>& warm);
+                                std::vector<float>& warm, SheetContacts* sheets = nullptr);
 
 }  // namespace imbibe

@@ -93,7 +93,7 @@ Vec3 place_in_pipe(const Source& s, std::uint64_t number, int attempt) {
   const Vec3 axis = normalized(s.velocity), helper = std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
   const Vec3 a = normalized(cross(axis, helper)), b = cross(axis, a);
   const Real r = s.radius * std::sqrt(uniform(id, 0)), angle = 2 * pi * uniform(id, 1);
-  return s.centre + r * std::cos(angle) * a + r * std::sin(angle) * b - s.length * uniform(id, 2) * axis;
+  return s.centre + r * portable::cos(angle) * a + r * portable::sin(angle) * b - s.length * uniform(id, 2) * axis;
 }
 
 EmitReport emit_from_pipe(Source& source, Liquid& liquid, Real t1) {

@@ -237,11 +237,13 @@ void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
     if (pull.length > t.s.line_length[i]) t.s.line_length[i] = pull.length, t.s.line_wall[i] = wall.wall;
     // Friction of the line, implicit so that it can only slow.
     Float4& u = f.velocity[i];
-    const Vec3f v = xyz(u), tangential = v - wall.normal * dot(v, wall.normal);
+    const Vec3f v = xyz(u), slip = v - f.boundary.wall_velocity(i, wall), tangential = slip - wall.normal * dot(slip, wall.normal);
     const float change = static_cast<float>(dt) * pull.drag;
     const Vec3f lost = tangential * (change / (1 + change));
     u = {v.x - lost.x, v.y - lost.y, v.z - lost.z, 0};
-    impulse[wall.wall] += Vec3(lost * f.particle_mass - pull.force * static_cast<float>(dt));
+    const Vec3 given(lost * f.particle_mass - pull.force * static_cast<float>(dt));
+    impulse[wall.wall] += given;
+    f.boundary.give(i, wall, given);
   }
   Vec3f surface{};
   if (kappa != 0) surface = pressure_response(t, i) * (2 * t.gamma * kappa);
@@ -299,6 +301,8 @@ Vec3 balance_drops(const Stage& t, Real dt, std::vector<Vec3>& impulse) {
       const Vec3 share = Vec3{sum[0], sum[1], sum[2]} * (t.s.line_length[i] / sum[4] * Real(f.particle_mass));
       held += share;
       impulse[t.s.line_wall[i]] -= share * dt;
+      for (const WallSample& wall : f.boundary.samples(i))
+        if (wall.wall == t.s.line_wall[i]) f.boundary.give(i, wall, -share * dt);
     } else if (sum[3] > 0) {
       const auto share = static_cast<float>(norm(xyz(t.s.gradient[i])) / sum[3]);
       Float4& force = f.force[i];

@@ -31,11 +31,12 @@ void liquid_part(const LiquidFields& f, const std::vector<Float4>& u, float visc
   });
 }
 
-// -nu shear u_t of all walls near a particle.
-Vec3f wall_part(const LiquidFields& f, std::size_t i, const Float4& u, float viscosity) {
+// -nu shear (u - w)_t of all walls near a particle; of a difference of velocities, w (the walls' own) drops out.
+Vec3f wall_part(const LiquidFields& f, std::size_t i, const Float4& u, float viscosity, bool difference) {
   Vec3f sum{};
   for (const WallSample& s : f.boundary.samples(i)) {
-    const Vec3f v{u.x, u.y, u.z};
+    Vec3f v{u.x, u.y, u.z};
+    if (!difference) v -= f.boundary.wall_velocity(i, s);
     sum -= viscosity * s.shear * (v - dot(v, s.normal) * s.normal);
   }
   return sum;
@@ -43,10 +44,10 @@ Vec3f wall_part(const LiquidFields& f, std::size_t i, const Float4& u, float vis
 
 // result = u - dt A u, with the walls.
 void implicit_operator(const LiquidFields& f, const std::vector<Float4>& u, float viscosity, float dt, bool walls,
-                       std::vector<Float4>& result) {
+                       bool difference, std::vector<Float4>& result) {
   liquid_part(f, u, viscosity, result);
   parallel_for(f.count, [&](std::size_t i) {
-    const Vec3f w = walls ? wall_part(f, i, u[i], viscosity) : Vec3f{};
+    const Vec3f w = walls ? wall_part(f, i, u[i], viscosity, difference) : Vec3f{};
     result[i] = {u[i].x - dt * (result[i].x + w.x), u[i].y - dt * (result[i].y + w.y),
                  u[i].z - dt * (result[i].z + w.z), 0};
   });
@@ -69,7 +70,7 @@ void add_scaled(std::vector<Float4>& to, double scale, const std::vector<Float4>
 ViscosityReport solve_implicit(LiquidFields& f, const ViscosityParams& params, float viscosity, float dt) {
   const std::size_t n = f.count;
   std::vector<Float4>& product = f.acceleration;
-  implicit_operator(f, f.velocity, viscosity, dt, params.wall_friction, product);
+  implicit_operator(f, f.velocity, viscosity, dt, params.wall_friction, false, product);
   parallel_for(n, [&](std::size_t i) {
     const Float4 &u = f.velocity[i], &a = product[i];
     f.residual[i] = {u.x - a.x, u.y - a.y, u.z - a.z, 0};
@@ -79,7 +80,7 @@ ViscosityReport solve_implicit(LiquidFields& f, const ViscosityParams& params, f
   const double goal = params.tolerance * params.tolerance * inner(f.velocity, f.velocity, n);
   ViscosityReport report;
   while (square > goal && report.iterations < params.max_iterations) {
-    implicit_operator(f, f.direction, viscosity, dt, params.wall_friction, product);
+    implicit_operator(f, f.direction, viscosity, dt, params.wall_friction, true, product);
     const double step = square / inner(f.direction, product, n);
     add_scaled(f.velocity, step, f.direction, n);
     add_scaled(f.residual, -step, product, n);
@@ -121,11 +122,12 @@ ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, 
   for (std::size_t i = 0; i < f.count; ++i) {
     for (const WallSample& s : f.boundary.samples(i)) {
       Float4& u = f.velocity[i];
-      const Vec3f v{u.x, u.y, u.z}, tangential = v - dot(v, s.normal) * s.normal;
+      const Vec3f v = Vec3f{u.x, u.y, u.z} - f.boundary.wall_velocity(i, s), tangential = v - dot(v, s.normal) * s.normal;
       const float rate = step * nu * s.shear;
       const Vec3f lost = implicit ? rate * tangential : (rate / (1 + rate)) * tangential;
       if (!implicit) u = {u.x - lost.x, u.y - lost.y, u.z - lost.z, u.w};
       impulse[s.wall] += static_cast<Real>(f.particle_mass) * Vec3(lost);
+      f.boundary.give(i, s, static_cast<Real>(f.particle_mass) * Vec3(lost));
     }
   }
   return report;

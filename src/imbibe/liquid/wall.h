@@ -10,6 +10,8 @@
 
 namespace imbibe {
 
+struct SheetWall;
+
 struct WallMaterial {
   Real contact_angle = pi / 2;  // rad, equilibrium or advancing
   Real receding_angle = -1;     // rad; < 0: no hysteresis, same as contact_angle
@@ -29,6 +31,8 @@ struct Wall {
   std::function<WallAngles(const Vec3&)> angles_at;
   // The wall is passable from both sides (a textile sheet): particles on different sides do not see each other.
   bool two_sided = false;
+  // A soft sheet (sheet_wall.h), in place of `shape`: it moves, and takes what the liquid gives it. Two-sided.
+  SheetWall* sheet = nullptr;
 };
 
 }  // namespace imbibe

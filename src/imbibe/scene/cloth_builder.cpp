@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/geometry/mesh_file.h"
 
 namespace imbibe {
@@ -71,7 +72,7 @@ TriangleMesh plain_tube(Real bore, Real length) {
   for (int k = 0; k < sides; ++k)
     for (int r = 0; r < 4; ++r) {
       const Real angle = 2 * pi * k / sides;
-      mesh.vertices.push_back({radii[r] * std::cos(angle), radii[r] * std::sin(angle), heights[r]});
+      mesh.vertices.push_back({radii[r] * portable::cos(angle), radii[r] * portable::sin(angle), heights[r]});
     }
   for (int k = 0; k < sides; ++k)
     for (int r = 0; r < 4; ++r) {

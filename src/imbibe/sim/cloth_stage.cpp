@@ -30,6 +30,12 @@ std::vector<ClothSolid> solids_of(const World& world) {
 
 }  // namespace
 
+void add_sheet_walls(const World& world, StepScratch& scratch) {
+  scratch.sheets_in_motion.resize(world.cell_cloths.size());
+  for (std::size_t i = 0; i < world.cell_cloths.size(); ++i)
+    scratch.walls.push_back(sheet_as_wall(world.cell_cloths[i].soft, scratch.sheets_in_motion[i]));
+}
+
 bool any_cloth_moves(const World& world) {
   return std::any_of(world.cell_cloths.begin(), world.cell_cloths.end(),
                      [](const CellCloth& cloth) { return cloth.soft.moves(); });
@@ -51,11 +57,13 @@ void step_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report
   for (std::size_t i = 0; i < world.cell_cloths.size(); ++i) {
     CellCloth& cloth = world.cell_cloths[i];
     SoftSheetScratch& own = scratch.sheets_in_motion[i];
+    if (report.liquid_moved) take_wall_impulse(cloth.soft, own, dt);
     report.cloth_moved = report.cloth_moved || cloth.soft.moves();
     report.cloth_substeps += advance_sheet(cloth.soft, own, world.gravity, solids, dt).substeps;
-    if (report.liquid_moved)
-      meet_particles(cloth, own, world.liquid, scratch.liquid.fields.position, scratch.dead, world.gravity, world.seed,
-                     world.step, exchange);
+    if (!report.liquid_moved) continue;
+    meet_particles(cloth, own, world.liquid, scratch.liquid.fields.position, scratch.dead, world.gravity, world.seed,
+                   world.step, exchange);
+    absorb_touching(cloth, own, world.liquid, scratch.dead, world.gravity, exchange);
   }
   remove_particles(world.liquid.particles, scratch.dead);
   for (std::size_t i = 0; i < world.cell_cloths.size(); ++i)

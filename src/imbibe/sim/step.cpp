@@ -112,6 +112,7 @@ std::string node_text(const YarnNetwork& network, std::size_t node) {
 void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& report) {
   const auto start = Clock::now();
   build_walls(world, scratch);
+  add_sheet_walls(world, scratch);
   LiquidStepReport liquid;
   try {
     liquid = step_liquid(world.liquid, world.liquid_params, scratch.walls, world.gravity, max_step, scratch.liquid);
