@@ -1,0 +1,178 @@
+// Seed B's cloth: what cells, sheet and liquid exchange.
+#include "imbibe/coupling/cell_cloth.h"
+
+#include <gtest/gtest.h>
+
+#include "imbibe/geometry/sampling.h"
+
+namespace imbibe {
+namespace {
+
+CellCloth hanging_cloth() {
+  CellCloth cloth;
+  cloth.soft.sheet = make_sheet(GridSheet{.corner = {0, 0, 0}, .along_v = {0, 0, 1}, .width = 0.2, .height = 0.2,
+                                          .columns = 11, .rows = 11, .areal_mass = 0.2});
+  pin_nodes(cloth.soft.sheet, nodes_of_edge(cloth.soft.sheet, "top"));
+  fit_cells(cloth);
+  return cloth;
+}
+
+Liquid liquid() {
+  Liquid l;
+  l.particle_mass = 1e-5;
+  return l;
+}
+
+TEST(CellCloth, GravityAlongAHangingClothIsG) {
+  const CellCloth cloth = hanging_cloth();
+  for (const Vec3& g : gravity_along(cloth.soft.sheet, {0, 0, -9.81})) EXPECT_LT(norm(g - Vec3{0, -9.81, 0}), 1e-9);
+}
+
+TEST(CellCloth, GravityAlongAnInclinedClothIsItsPartInTheCloth) {
+  CellCloth cloth = hanging_cloth();
+  const Real angle = 0.6;
+  for (std::size_t n = 0; n < cloth.soft.sheet.size(); ++n) {
+    const Real u = cloth.soft.sheet.u[n], v = cloth.soft.sheet.v[n];
+    cloth.soft.sheet.position[n] = {u, v * std::cos(angle), v * std::sin(angle)};
+  }
+  for (const Vec3& g : gravity_along(cloth.soft.sheet, {0, 0, -9.81}))
+    EXPECT_LT(norm(g - Vec3{0, -9.81 * std::sin(angle), 0}), 1e-9);
+}
+
+TEST(CellCloth, ContentsAndWaitingLiquidWeighOnTheirNodes) {
+  CellCloth cloth = hanging_cloth();
+  add_parcel(*cloth.grid, cloth.contents, 0.1, 0.1, 3e-4);
+  cloth.waiting_kg[7] = 2e-4;
+  weigh(cloth);
+  EXPECT_EQ(cloth.soft.sheet.added_mass[11 * 5 + 5], 3e-4);
+  EXPECT_EQ(cloth.soft.sheet.added_mass[7], 2e-4);
+  EXPECT_NEAR(total_mass(cloth.soft.sheet), 0.04 * 0.2 + 5e-4, 1e-15);
+}
+
+TEST(CellCloth, WaterSoftensAndDampsAsItsParametersSay) {
+  CellCloth cloth = hanging_cloth();
+  cloth.wet = {.softening = 0.4, .damping = 0.02};
+  const std::size_t cell = 11 * 5 + 5;
+  add_parcel(*cloth.grid, cloth.contents, 0.1, 0.1, 0.5 * cloth.grid->capacity(cell));
+  weigh(cloth);
+  EXPECT_NEAR(cloth.soft.sheet.stiffness_factor[cell], 0.8, 1e-6);  // saturations are shown in single precision
+  EXPECT_NEAR(cloth.soft.sheet.damping_added[cell], 0.01, 1e-8);
+  EXPECT_EQ(cloth.soft.sheet.stiffness_factor[0], 1);
+}
+
+TEST(CellCloth, ParcelsThatMoveTakeTheirMomentumAlong) {
+  CellCloth cloth = hanging_cloth();
+  SoftSheetScratch scratch;
+  Sheet& sheet = cloth.soft.sheet;
+  find_held(sheet, scratch.held);
+  set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+  for (int k = 0; k < 400; ++k) {
+    const RandomCounter id{1, static_cast<std::uint64_t>(k), 0};
+    add_parcel(*cloth.grid, cloth.contents, 0.08 + 0.04 * uniform(id, 0), 0.08 + 0.04 * uniform(id, 1), 1e-6);
+  }
+  cloth.params.resistance = 100, cloth.params.leak = false, cloth.params.drying = false;
+  weigh(cloth);
+  for (std::size_t n = 0; n < sheet.size(); ++n)
+    if (!scratch.held[n]) sheet.velocity[n] = {0.3 * std::sin(3.0 * static_cast<Real>(n)), 0.2, std::cos(7.0 * static_cast<Real>(n))};
+  const Vec3 before = momentum(sheet);
+  Liquid none;
+  CellExchangeReport report;
+  step_cell_cloth(cloth, scratch, none, Air{}, {0, 0, -9.81}, 0.05, report);
+  EXPECT_LT(norm(momentum(sheet) - cloth.soft.support_impulse - before), 1e-13 * norm(before));
+}
+
+TEST(CellCloth, WhatLeaksIsBornBelowTheLowestCellThatIsWet) {
+  CellCloth cloth = hanging_cloth();
+  SoftSheetScratch scratch;
+  Sheet& sheet = cloth.soft.sheet;
+  find_held(sheet, scratch.held);
+  set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+  cloth.params.absorption_factor = 0, cloth.params.resistance = 1e8;
+  const Real capacity = cloth.grid->capacity(11 * 5 + 5);
+  for (int k = 0; k < 40; ++k) add_parcel(*cloth.grid, cloth.contents, 0.1, 0.1, 0.05 * capacity);
+  for (int row = 0; row < 5; ++row)
+    for (int k = 0; k < 4; ++k) add_parcel(*cloth.grid, cloth.contents, 0.1, 0.02 * row, 0.05 * capacity);
+  Liquid water = liquid();
+  water.particle_mass = 0.05 * capacity;
+  CellExchangeReport report;
+  const Real before = cell_kg(cloth);
+  for (int step = 0; step < 60; ++step) {
+    step_cell_cloth(cloth, scratch, water, Air{}, {0, 0, -9.81}, 0.02, report);
+    for (Float4& x : water.particles.position) x.z -= 0.01f;  // they fall
+  }
+  EXPECT_GT(report.released, 10u);
+  EXPECT_NEAR(cell_kg(cloth) + waiting_kg(cloth) + water.mass() + report.evaporated_kg, before, 1e-12 * before);
+  for (const Float4& x : water.particles.position) {
+    EXPECT_NEAR(x.x, 0.1, 1e-5);
+    EXPECT_LT(x.z, 0);  // under the hem
+  }
+}
+
+TEST(CellCloth, LiquidThatLiesOnItIsTakenInAndWhatHangsUnderItIsNot) {
+  CellCloth cloth;
+  cloth.soft.sheet = make_sheet(GridSheet{.width = 0.2, .height = 0.2, .columns = 11, .rows = 11, .areal_mass = 0.2});
+  cloth.soft.sheet.fixed = true;
+  fit_cells(cloth);
+  SoftSheetScratch scratch;
+  const Sheet& sheet = cloth.soft.sheet;
+  find_held(sheet, scratch.held);
+  set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+  Liquid water = liquid();
+  const Real dx = water.spacing();
+  add_particle(water, {0.1, 0.1, 0.5 * dx}, {});
+  add_particle(water, {0.1, 0.1, -0.5 * dx}, {});
+  add_particle(water, {0.1, 0.1, 2 * dx}, {});
+  add_particle(water, {0.25, 0.1, 0}, {});  // beside it
+  std::vector<std::uint8_t> dead(4, 0);
+  CellExchangeReport report;
+  absorb_touching(cloth, scratch, water, dead, {0, 0, -9.81}, report);
+  EXPECT_EQ(dead, (std::vector<std::uint8_t>{1, 0, 0, 0}));
+  EXPECT_EQ(cell_kg(cloth), water.particle_mass);
+}
+
+TEST(CellCloth, AFullCellBouncesUnlessToldOtherwise) {
+  for (const bool bounce : {true, false}) {
+    CellCloth cloth;
+    cloth.soft.sheet = make_sheet(GridSheet{.width = 0.2, .height = 0.2, .columns = 11, .rows = 11, .areal_mass = 0.2});
+    cloth.soft.sheet.fixed = true;
+    cloth.params.bounce = bounce;
+    fit_cells(cloth);
+    const Index cell = 11 * 5 + 5;
+    add_parcel(*cloth.grid, cloth.contents, 0.1, 0.1, cloth.grid->capacity(cell));
+    SoftSheetScratch scratch;
+    const Sheet& sheet = cloth.soft.sheet;
+    find_held(sheet, scratch.held);
+    set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+    Liquid water = liquid();
+    add_particle(water, {0.1, 0.101, -0.01}, {0, 0, -2});
+    const std::vector<Float4> before{{0.1f, 0.101f, 0.01f, 0}};
+    std::vector<std::uint8_t> dead(1, 0);
+    CellExchangeReport report;
+    meet_particles(cloth, scratch, water, before, dead, {0, 0, -9.81}, 1, 0, report);
+    EXPECT_EQ(report.bounced, bounce ? 1u : 0u);
+    EXPECT_EQ(report.absorbed, bounce ? 0u : 1u);
+    if (bounce) {
+      EXPECT_GT(water.particles.velocity[0].z, 0);
+      EXPECT_GT(water.particles.position[0].z, 0);
+    }
+  }
+}
+
+TEST(CellCloth, CellsOfAFreeFormSheetCoverIt) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.2, 0, 0}, {0, 0.3, 0}, {0.15, 0.25, 0}};
+  mesh.triangles = {{0, 1, 2}, {1, 3, 2}};
+  std::vector<std::array<Real, 2>> uv;
+  for (const Vec3& v : mesh.vertices) uv.push_back({v.x, v.y});
+  CellCloth cloth;
+  cloth.soft.sheet = make_sheet(mesh, uv, 0.2);
+  cloth.params.cell_size = 0.01;
+  fit_cells(cloth);
+  Real area = 0, expected = 0;
+  for (const Real a : cloth.grid->area) area += a;
+  for (const Real a : node_areas(cloth.soft.sheet)) expected += a;
+  EXPECT_NEAR(area, expected, 1e-12);
+}
+
+}  // namespace
+}  // namespace imbibe
