@@ -45,8 +45,9 @@ RunFrames open_run_frames(const std::filesystem::path& folder, const World& worl
   }
   for (std::size_t i = 0; i < world.cell_cloths.size(); ++i) {
     const CellCloth& cloth = world.cell_cloths[i];
-    run.collections.push_back({.textile = cloth.name, .cloth = i, .points = cloth.soft.sheet.size(),
-                               .entries = read_pvd(folder / (stems[1 + 2 * world.textiles.size() + i] + ".pvd"))});
+    run.collections.push_back({.textile = cloth.name, .points = cloth.soft.sheet.size(),
+                               .entries = read_pvd(folder / (stems[1 + 2 * world.textiles.size() + i] + ".pvd")),
+                               .cloth = i});
   }
   for (const RunFrames::Collection& collection : run.collections)
     for (const PvdEntry& entry : collection.entries) run.times.push_back(entry.time_s);

@@ -20,9 +20,9 @@ struct RunFrames {
   static constexpr std::size_t no_cloth = std::size_t(-1);
   struct Collection {
     std::string textile{};            // "" = liquid
-    std::size_t cloth = no_cloth;     // in start.cloths
     std::size_t first_point = 0, points = 0;  // of the textile in start.yarns
     std::vector<PvdEntry> entries{};
+    std::size_t cloth = no_cloth;     // in start.cloths
   };
   std::vector<Collection> collections;
 };
