@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,11 @@ class RandomFiller {
   }
   template <class P>
   void group(const char*, P& params, const char* = "") { describe(*this, params); }
+  template <class P>
+  void group(const char* name, std::optional<P>& params, const char* help = "") {
+    params.reset();
+    if (random() < 0.5) group(name, params.emplace(), help);
+  }
   template <class P>
   void list(const char*, std::vector<P>& items, const char* = "") {
     items.resize(pick(4));
@@ -89,6 +95,11 @@ class BitListing {
     text += std::string(name) + "{\n";
     describe(*this, params);
     text += "}\n";
+  }
+  template <class P>
+  void group(const char* name, std::optional<P>& params, const char* help = "") {
+    if (params) group(name, *params, help);
+    else text += std::string(name) + " none\n";
   }
   template <class P>
   void list(const char* name, std::vector<P>& items, const char* = "") {
