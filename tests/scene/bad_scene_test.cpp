@@ -156,7 +156,7 @@ TEST(BadScene, AllProblemsOfAFileComeInOneGo) {
       "durations: 4\n"
       "air: {humidity: 120 %, temperature: 20}\n"
       "textiles:\n"
-      "  - {size: [1, -1 mm], sheet: soft, warp: {fibre: [cotton]}}\n");
+      "  - {size: [1, -1 mm], sheet: loose, warp: {fibre: [cotton]}}\n");
   std::vector<std::string> keys;
   for (const Problem& p : problems) keys.push_back(p.key);
   const std::vector<std::string> wanted = {"duration",         "air.temperature",        "air.humidity", "textiles[0].size[1]",

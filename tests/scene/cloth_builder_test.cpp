@@ -18,7 +18,7 @@ const char* const cloth_scene =
     "liquid:\n"
     "  particle_mass: 30 mg\n"
     "  pipes:\n"
-    "    - {radius: 20 mm, length: 60 mm, transform: {translation: [0, 0, 100 mm], rotation: [180 deg, 0, 0]},\n"
+    "    - {radius: 20 mm, length: 60 mm, transform: {translation: [0, 0, 100 mm], rotation: [180 deg, 0 deg, 0 deg]},\n"
     "       particle_rate: 300, speed: 1 m/s}\n"
     "textiles:\n"
     "  - name: cloth\n"

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/portable.h"
 #include "imbibe/wetting/evaporation.h"
 
 namespace imbibe {
@@ -97,17 +98,23 @@ bool is_free(const Particles& particles, const Vec3& place, Real clearance) {
   });
 }
 
-// Where what leaks at a cell hangs: half a spacing under the sheet there; at a steep or hanging place below the node.
-std::optional<Vec3> birth_place(const CellCloth& cloth, const MovingMesh& surface, Index cell, const Vec3& down,
-                                Real spacing) {
-  const Sheet& sheet = cloth.soft.sheet;
-  const Vec3& x = sheet.position[(*cloth.node_of_cell)[cell]];
-  const Vec3 place = x + 0.6 * spacing * down;
-  // Nothing of the sheet may lie between: from just under the node's own triangles on.
-  const NearestOnSheet near = nearest_on(surface, place);
-  if (near.distance > 0.3 * spacing) return place;
-  const Vec3 moved = near.point + 0.6 * spacing * (dot(near.normal, down) >= 0 ? near.normal : -near.normal);
-  return moved;
+// Where what leaks at a cell may hang: under the sheet there, around that place, and one spacing lower.
+std::array<Vec3, 14> birth_places(const CellCloth& cloth, const MovingMesh& surface, Index cell, const Vec3& down, Real spacing) {
+  const Vec3 hang = cloth.soft.sheet.position[(*cloth.node_of_cell)[cell]] + 0.6 * spacing * down;
+  const Vec3 helper = std::abs(down.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 a = normalized(cross(down, helper)), b = cross(down, a);
+  std::array<Vec3, 14> places;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    Vec3 place = hang + (k < 7 ? 0 : spacing) * down;
+    const Real angle = 2 * pi * static_cast<Real>(k % 7) / 6;
+    if (k % 7 > 0) place += spacing * (portable::cos(angle) * a + portable::sin(angle) * b);
+    // Clear of the sheet, on the side where it hangs.
+    const NearestOnSheet near = nearest_on(surface, place, 0.4 * spacing);
+    if (near.at.triangle != no_index)
+      place = near.point + 0.6 * spacing * (dot(near.normal, down) >= 0 ? near.normal : -near.normal);
+    places[k] = place;
+  }
+  return places;
 }
 
 void release(CellCloth& cloth, const SoftSheetScratch& scratch, Liquid& liquid, const Vec3& gravity,
@@ -116,17 +123,15 @@ void release(CellCloth& cloth, const SoftSheetScratch& scratch, Liquid& liquid, 
   if (mass <= 0) return;
   const Vec3 down = normalized(gravity);
   for (Index cell = 0; cell < cloth.waiting_kg.size(); ++cell) {
-    while (cloth.waiting_kg[cell] >= mass) {
-      const auto place = birth_place(cloth, scratch.surface, cell, down, liquid.spacing());
-      if (!place || !is_free(liquid.particles, *place, 0.8 * liquid.spacing())) break;
-      const Index node = (*cloth.node_of_cell)[cell];
-      const Vec3 velocity = cloth.soft.sheet.velocity[node];
-      add_particle(liquid, *place, velocity);
-      const Vec3 born = xyz(liquid.particles.velocity.back());
+    if (cloth.waiting_kg[cell] < mass) continue;
+    const Index node = (*cloth.node_of_cell)[cell];
+    for (const Vec3& place : birth_places(cloth, scratch.surface, cell, down, liquid.spacing())) {
+      if (cloth.waiting_kg[cell] < mass) break;
+      if (!is_free(liquid.particles, place, 0.8 * liquid.spacing())) continue;
+      add_particle(liquid, place, cloth.soft.sheet.velocity[node]);
       // Rounding to single precision is the sheet's: momentum stays whole.
-      cloth.soft.liquid_impulse -= mass * born;
+      cloth.soft.liquid_impulse -= mass * xyz(liquid.particles.velocity.back());
       cloth.waiting_kg[cell] -= mass;
-      if (cloth.waiting_kg[cell] < 1e-12 * mass) cloth.waiting_kg[cell] = std::max(0.0, cloth.waiting_kg[cell]);
       cloth.soft.sheet.added_mass[node] = std::max(0.0, cloth.soft.sheet.added_mass[node] - mass);
       ++cloth.released_particles, ++report.released;
     }
