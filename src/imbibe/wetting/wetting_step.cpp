@@ -19,6 +19,8 @@ constexpr Real moved_in_step = 0.05;   // share of the liquid that should change
 constexpr Real growth = 3;            // the most from step to step
 constexpr Real dried_in_step = 0.02;  // saturation that evaporation, taken before transport, may cost a node in one step
 constexpr Real shrink = 0.3;
+// Of one call. Uptake by an opened pore takes tens; numbers far from any cloth's have needed steps that shrink for ever.
+constexpr int most_attempts = 5000;
 constexpr int most_rejections = 30;   // one after the other: 0.3^30 of the step
 
 struct Substep {
@@ -108,6 +110,10 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
   Real step = dt;
   int rejected_in_a_row = 0;
   while (report.advanced_s < dt) {
+    if (report.substeps + report.rejected >= most_attempts) {
+      report.converged = false;
+      break;
+    }
     const Real left = dt - report.advanced_s;
     // The last piece takes all that is left, so the pieces add up to dt and no sliver remains.
     const bool last = step >= left * (1 - 1e-9);
@@ -127,9 +133,9 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
       step = shrink * now;
       report.suggested_step = step;
       ++report.rejected;
+      report.hardest_node = substep.transport.hardest_node;
       if (++rejected_in_a_row <= most_rejections) continue;
       report.converged = false;
-      report.hardest_node = substep.transport.hardest_node;
       break;
     }
     ++report.substeps;

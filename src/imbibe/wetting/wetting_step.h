@@ -33,7 +33,7 @@ struct WettingReport {
   int newton_iterations = 0, linear_iterations = 0;
   int substeps = 0, rejected = 0;
   std::size_t active_nodes = 0; // most nodes in one solve
-  Index hardest_node = 0;       // where `converged` is false: the node farthest from its equation
+  Index hardest_node = 0;       // of the last attempt that failed: the node farthest from its equation
   Real largest_change = 0;      // of saturation in one substep
   Real suggested_step = 0;      // s, for the next call: by what moves, what dries, and how hard it was to solve
 };
