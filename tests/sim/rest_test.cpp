@@ -70,8 +70,9 @@ TEST(Rest, AParticleJustLetGoIsNotFrozenInTheAirBesideLiquidThatRests) {
   EXPECT_FALSE(world.pace.resting);
   const Particles& p = world.liquid.particles;
   const auto at = static_cast<std::size_t>(std::find(p.id.begin(), p.id.end(), id) - p.id.begin());
-  // Not exactly free fall: the pool lies within its support radius.
-  EXPECT_LT(p.position[at].z, height - 0.75 * 0.5 * 9.81 * fall * fall);
+  // Not exactly free fall: the pool lies within its support radius and its density correction moves the particle by up to a
+  // third of the fall either way, by how the pool's top layer lies. Frozen would be 0.
+  EXPECT_LT(p.position[at].z, height - 0.5 * 0.5 * 9.81 * fall * fall);
 }
 
 }  // namespace
