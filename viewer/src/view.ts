@@ -189,6 +189,7 @@ export class View {
     const area = this.area(index);
     this.camera.aspect = area.z / area.w;
     this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
     const pointer = new THREE.Vector2(((x - box.left - area.x) / area.z) * 2 - 1, 1 - ((y - box.top) / area.w) * 2);
     const caster = new THREE.Raycaster();
     caster.setFromCamera(pointer, this.camera);
@@ -258,6 +259,7 @@ export class View {
     const area = this.area(swatch);
     this.camera.aspect = area.z / area.w;
     this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
     const p = place.clone().project(this.camera);
     return { x: area.x + (0.5 + 0.5 * p.x) * area.z, y: (0.5 - 0.5 * p.y) * area.w };
   }
