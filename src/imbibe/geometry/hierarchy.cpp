@@ -77,10 +77,11 @@ void refit(BoxHierarchy& tree, std::span<const Bounds> boxes) {
 
 BoxHierarchy build_hierarchy(const TriangleMesh& mesh) { return build_hierarchy(triangle_boxes(mesh)); }
 
-MeshPoint closest_point(const BoxHierarchy& tree, const TriangleMesh& mesh, const Vec3& p, QueryCounts* counts) {
+MeshPoint closest_point(const BoxHierarchy& tree, const TriangleMesh& mesh, const Vec3& p, QueryCounts* counts,
+                        Real within) {
   MeshPoint best;
   QueryCounts local;
-  Real best_squared = std::numeric_limits<Real>::infinity();
+  Real best_squared = within * within;
   visit_nearest(tree, p, best_squared, local, [&](Index t) {
     const TrianglePoint found = closest_on_triangle(p, mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2));
     const Real squared = squared_norm(p - found.point);

@@ -135,9 +135,10 @@ struct MeshPoint {
   Vec3 point{};
   Real squared_distance = std::numeric_limits<Real>::infinity();
 };
-// The point of the mesh nearest to p; of equally near triangles the lowest. An empty mesh gives no_index.
-MeshPoint closest_point(const BoxHierarchy& tree, const TriangleMesh& mesh, const Vec3& p,
-                        QueryCounts* counts = nullptr);
+// The point of the mesh nearest to p; of equally near triangles the lowest. An empty mesh, or none within the distance
+// `within`, gives no_index.
+MeshPoint closest_point(const BoxHierarchy& tree, const TriangleMesh& mesh, const Vec3& p, QueryCounts* counts = nullptr,
+                        Real within = std::numeric_limits<Real>::infinity());
 
 struct MeshCrossing {
   Index triangle = no_index;

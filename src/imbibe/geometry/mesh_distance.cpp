@@ -56,7 +56,16 @@ Vec3 MeshDistance::normal_at(const MeshPoint& nearest) const {
 }
 
 SurfaceSample MeshDistance::nearest(const Vec3& point, QueryCounts* counts) const {
-  const MeshPoint found = closest_point(hierarchy_, mesh_, point, counts);
+  return sample_at(closest_point(hierarchy_, mesh_, point, counts), point);
+}
+
+std::optional<SurfaceSample> MeshDistance::nearest_within(const Vec3& point, Real within) const {
+  const MeshPoint found = closest_point(hierarchy_, mesh_, point, nullptr, within);
+  if (found.triangle == no_index) return std::nullopt;
+  return sample_at(found, point);
+}
+
+SurfaceSample MeshDistance::sample_at(const MeshPoint& found, const Vec3& point) const {
   const Vec3 normal = normal_at(found);
   const Vec3 away = point - found.point;
   const Real distance = std::sqrt(found.squared_distance);

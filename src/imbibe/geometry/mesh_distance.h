@@ -6,6 +6,7 @@
 // Tested in tests/geometry/mesh_distance_test.cpp.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,15 @@ class MeshDistance {
   explicit MeshDistance(TriangleMesh mesh, const std::string& file = "");
 
   SurfaceSample nearest(const Vec3& point, QueryCounts* counts = nullptr) const;
+  // Nothing when the surface is farther than `within`: costs a few boxes far away.
+  std::optional<SurfaceSample> nearest_within(const Vec3& point, Real within) const;
   const TriangleMesh& mesh() const { return mesh_; }
   const BoxHierarchy& hierarchy() const { return hierarchy_; }
   const Bounds& bounds() const { return hierarchy_.nodes[0].bounds; }
 
  private:
   Vec3 normal_at(const MeshPoint& nearest) const;
+  SurfaceSample sample_at(const MeshPoint& nearest, const Vec3& point) const;
 
   TriangleMesh mesh_;
   BoxHierarchy hierarchy_;

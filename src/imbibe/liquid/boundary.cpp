@@ -8,6 +8,7 @@
 #include "imbibe/core/parallel.h"
 #include "imbibe/core/portable.h"
 #include "imbibe/geometry/bounds.h"
+#include "imbibe/geometry/mesh_distance.h"
 #include "imbibe/liquid/neighbours.h"
 
 namespace imbibe {
@@ -111,11 +112,18 @@ SolidSum solid_sum(const Cone& s, const Vec3& p, Real h) {
   return product.sum();
 }
 
-SolidSum solid_sum(const MeshShape& s, const Vec3& p, Real h) {
-  const SurfaceSample nearest = nearest_surface(Shape(s), p);
+// A half-space behind the nearest point.
+SolidSum solid_sum(const SurfaceSample& nearest, Real h) {
   SlabProduct product;
   product.add(half_space_integral(nearest.distance, h), nearest.normal);
   return product.sum();
+}
+
+SolidSum sum_of(const Shape& shape, const Vec3& p, Real h) {
+  return std::visit([&](const auto& s) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(s)>, MeshShape>) return solid_sum(nearest_surface(shape, p), h);
+    else return solid_sum(s, p, h);
+  }, shape);
 }
 
 // A thin box as a sheet: its thin axis, and half the thickness.
@@ -238,8 +246,19 @@ bool sample_soft(const PreparedWall& w, const Vec3& p, Real support, SurfaceSamp
   return true;
 }
 
-bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample& out, std::uint32_t& side,
-                 SheetFoot& foot) {
+std::optional<SurfaceSample> nearest_of_mesh(const MeshDistance& mesh, const Vec3& p, Real support,
+                                             Boundary::MeshMemory& memory) {
+  if (squared_norm(p - memory.clear_centre) <= memory.clear_squared) return std::nullopt;
+  const Real searched = 3 * support;
+  const std::optional<SurfaceSample> nearest = mesh.nearest_within(p, searched);
+  const Real clear = (nearest ? std::abs(nearest->distance) : searched) - support;
+  // Inside the solid nothing is clear, however far its surface.
+  if (clear > 0 && !(nearest && nearest->distance < 0)) memory = {p, clear * clear};
+  return nearest;
+}
+
+bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, Boundary::MeshMemory& memory, WallSample& out,
+                 std::uint32_t& side, SheetFoot& foot) {
   if (!w.everywhere && !w.reach.contains(p)) return false;
   SurfaceSample nearest;
   SolidSum sum;
@@ -255,10 +274,15 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, WallSample&
     }
     if (nearest.distance >= support) return false;
     sum = sheet_sum(*w.sheet, at, p, support);
+  } else if (const MeshShape* mesh = std::get_if<MeshShape>(w.wall->shape)) {
+    const std::optional<SurfaceSample> found = nearest_of_mesh(**mesh, p, support, memory);
+    if (!found || found->distance >= support) return false;
+    nearest = *found;
+    sum = solid_sum(nearest, support);
   } else {
     nearest = nearest_surface(*w.wall->shape, p);
     if (nearest.distance >= support) return false;
-    sum = std::visit([&](const auto& s) { return solid_sum(s, p, support); }, *w.wall->shape);
+    sum = sum_of(*w.wall->shape, p, support);
   }
   out.distance = static_cast<float>(nearest.distance);
   out.normal = Vec3f(nearest.normal);
@@ -328,13 +352,16 @@ void sample_walls(Boundary& boundary, std::span<const Float4> position, std::siz
     tile.samples.clear(), tile.feet.clear();
     tile.first.assign(1, 0);
     std::size_t near = 0;
+    std::vector<Boundary::MeshMemory>& memory = tile.mesh_memory;
+    memory.assign(ready.size(), {});
     for (std::size_t i = begin; i < end; ++i) {
       NearestSamples found;
       std::uint32_t side = 0;
       WallSample sample;
       SheetFoot foot;
-      for (const PreparedWall& w : ready) {
-        if (!sample_wall(w, place(position[i]), kernel.support, sample, side, foot)) continue;
+      for (std::size_t k = 0; k < ready.size(); ++k) {
+        const PreparedWall& w = ready[k];
+        if (!sample_wall(w, place(position[i]), kernel.support, memory[k], sample, side, foot)) continue;
         if (w.wall->sheet != nullptr) {
           foot.particle = static_cast<Index>(i);
           sample.foot = static_cast<Index>(tile.feet.size());

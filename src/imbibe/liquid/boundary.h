@@ -38,9 +38,16 @@ struct WallSample {
 
 // Cache of one step; nothing here is state.
 struct Boundary {
+  // What the last queries of a mesh say about the next particle, which is mostly near the last one: a distance changes
+  // by no more than the way between two points.
+  struct MeshMemory {
+    Vec3 clear_centre{};
+    Real clear_squared = -1;  // nearer to clear_centre than its root no point has the surface within the support
+  };
   struct Tile {
     std::vector<WallSample> samples;
     std::vector<SheetFoot> feet;         // on soft sheets
+    std::vector<MeshMemory> mesh_memory;  // per wall, work space
     std::vector<std::uint16_t> first;  // per particle of the tile, and one end mark
   };
   std::vector<Tile> tiles;             // of default_tile particles

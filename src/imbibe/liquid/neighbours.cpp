@@ -120,6 +120,8 @@ struct CompressTable {
 };
 constexpr CompressTable compress_table;
 
+constexpr Ints first_lanes = {0, 1, 2, 3, 4, 5, 6, 7};
+
 using Candidates = NeighbourTile::Candidates;
 
 // The particles of the 27 cells around a cell, as nine contiguous ranges. The cursors only move forward.
@@ -155,10 +157,15 @@ std::size_t gather_candidates(const Neighbours& n, RowCursors& rows, std::uint64
       const std::size_t room = 2 * (count + size + lanes);
       out.x.resize(room), out.y.resize(room), out.z.resize(room), out.id.resize(room), out.side.resize(room);
     }
-    std::copy_n(n.x.data() + begin, size, out.x.data() + count);
-    std::copy_n(n.y.data() + begin, size, out.y.data() + count);
-    std::copy_n(n.z.data() + begin, size, out.z.data() + count);
-    for (std::size_t k = 0; k < size; ++k) out.id[count + k] = static_cast<Index>(begin + k);
+    // Whole vectors, past the end of the range too: ranges are short, and what is too much is overwritten.
+    for (std::size_t k = 0; k < size; k += lanes) {
+      const std::size_t from = begin + k, to = count + k;
+      simd::store(&out.x[to], simd::load(&n.x[from]));
+      simd::store(&out.y[to], simd::load(&n.y[from]));
+      simd::store(&out.z[to], simd::load(&n.z[from]));
+      const Ints id = first_lanes + static_cast<std::int32_t>(from);
+      std::memcpy(&out.id[to], &id, sizeof id);
+    }
     if (!side.empty()) std::copy_n(side.data() + begin, size, out.side.data() + count);
     count += size;
   }
@@ -186,8 +193,7 @@ std::size_t search(const Neighbours& n, std::size_t i, const Candidates& c, std:
     const Ints id = simd::load_int(&c.id[k]);
     Ints near = (d2 < limit) & (id != self);
     if (own != 0) near &= (simd::load_int(&c.side[k]) & opposite) == 0;
-    const unsigned pattern = simd::bits(near);
-    if (pattern == 0) continue;
+    const unsigned pattern = simd::bits(near);  // nothing found is stored too: half of the vectors, not to be foreseen
     const Ints lane = simd::load_int(compress_table.lane[pattern]);
     const Ints ids = simd::permuted(id, lane);
     std::memcpy(&index[found], &ids, sizeof ids);
@@ -281,7 +287,7 @@ void sort_particles(Neighbours& n, Particles& particles, const Kernel& kernel) {
 
 void build_lists(Neighbours& n, std::span<const Float4> position, std::span<const std::uint32_t> side) {
   IMBIBE_ASSERT(position.size() >= n.count);
-  n.x.resize(n.count), n.y.resize(n.count), n.z.resize(n.count);
+  for (auto* array : {&n.x, &n.y, &n.z}) array->resize(n.count + lanes);  // whole vectors can be read from any particle
   parallel_for(n.count, [&](std::size_t i) {
     n.x[i] = position[i].x, n.y[i] = position[i].y, n.z[i] = position[i].z;
   }, 4096);

@@ -313,6 +313,17 @@ Vec3 balance_drops(const Stage& t, Real dt, std::vector<Vec3>& impulse) {
   return held;
 }
 
+// Without surface tension nothing but the classes is wanted; every wall that liquid reaches counts as wet.
+void classify_only(LiquidFields& f, std::vector<ParticleClass>& kinds) {
+  parallel_for(f.count, [&](std::size_t i) {
+    float nearest = 1e6f;
+    for (const WallSample& wall : f.boundary.samples(i)) nearest = std::min(nearest, wall.distance / f.spacing);
+    const float gradient_h = norm(xyz(f.colour_gradient[i]) + xyz(f.boundary.wall[i])) * f.neighbours.kernel.support;
+    kinds[i] = particle_class(gradient_h, f.filling[i], nearest);
+    f.force[i] = {};
+  });
+}
+
 void begin_scratch(SurfaceScratch& s, std::size_t count) {
   s.gradient.resize(count), s.normal.resize(count);
   s.curvature.resize(count), s.line_length.resize(count), s.line_wall.resize(count);
@@ -325,6 +336,10 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
                               std::span<const Wall> walls, Real dt, SurfaceScratch& scratch,
                               std::vector<ParticleClass>& kinds, std::vector<Vec3>& impulse) {
   SurfaceReport report;
+  if (surface_tension <= 0) {
+    classify_only(f, kinds);
+    return report;
+  }
   begin_scratch(scratch, f.count);
   const Stage t{f, params, scratch, static_cast<float>(surface_tension)};
   parallel_for(f.count, [&](std::size_t i) { mark_surface(t, i, kinds[i]); });
