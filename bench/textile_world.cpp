@@ -37,11 +37,17 @@ limits: {{max_particles: 1e8, max_memory: 20 GB}}
 void wet(Textile& textile) {
   const WettingModel& m = *textile.model;
   const Real distance = 20e-3;  // m, of the stains' centres
+  const Real radius = 0.4 * distance, greatest = 0.9, power = 1 / (2 + 1 / m.params.yarn_size_index);
   for (std::size_t i = 0; i < m.nodes(); ++i) {
     const Vec3& c = m.centre[i];
     const Real x = std::remainder(c.x, distance), y = std::remainder(c.y, distance);
-    const Real share = 1 - std::hypot(x, y) / (0.4 * distance);
-    const Real s = share <= 0 ? 0 : std::min(0.9, 1.5 * share);
+    const Real inside = 1 - (x * x + y * y) / (radius * radius);
+    if (inside <= 0) continue;
+    Real s = greatest * std::pow(inside, power);
+    if (i >= m.segments) {
+      const Real pressure = filling_pressure(m, 0, s).value;
+      s = saturation_at({m.entry[i], m.size_index[i], m.open[i], m.overfill[i]}, pressure);
+    }
     textile.contents.liquid_kg[i] = s * m.volume[i] * m.liquid.density;
   }
 }
