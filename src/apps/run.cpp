@@ -14,6 +14,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/output_file.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/io/background_writer.h"
 #include "imbibe/io/machine.h"
 #include "imbibe/io/progress.h"
 #include "imbibe/io/report.h"
@@ -154,7 +155,7 @@ class RunSession {
     }
     hooks.stop_requested = [&] { return stop_signal != 0 || (changes_ && changes_->ended()); };
     try {
-      RunEnd end = run(world_, plan, hooks);
+      RunEnd end = run_and_write(plan, hooks);
       if (changes_ && changes_->ended()) end = RunEnd::finished;
       progress.finish();
       folder_->write_checkpoint(world_);
@@ -186,6 +187,27 @@ class RunSession {
   }
 
  private:
+  // Runs with the writing beside it; returns or throws when all that was to be written is.
+  RunEnd run_and_write(const RunPlan& plan, const RunHooks& hooks) {
+    try {
+      const RunEnd end = run(world_, plan, hooks);
+      const auto start = std::chrono::steady_clock::now();
+      writer_.finish();
+      waited_s_ += seconds_since(start);
+      return end;
+    } catch (const OutputError&) {
+      writer_.abandon();
+      throw;
+    } catch (...) {
+      try {
+        writer_.finish();
+      } catch (const std::exception& lost) {  // the run's own error says more
+        std::fprintf(stderr, "not all was written: %s\n", lost.what());
+      }
+      throw;
+    }
+  }
+
   // The estimate is of the most that the run can write, so it is no reason to refuse.
   void warn_of_little_space() const {
     const double wanted = estimate_scene(scene_, world_.liquid.kind).disk_bytes, there = free_space(folder_path_);
@@ -227,16 +249,21 @@ class RunSession {
     return stage_for(read_frame(open_run_frames(folder_path_, world_, scene_.title), 0), scene_.picture);
   }
 
+  // Hands a copy of the world to the writer: the run goes on while files and pictures are made.
   void write(const World& world, const StepReport& report) {
     const auto start = std::chrono::steady_clock::now();
-    const bool written = folder_->write_output(world, report);
-    // The state a resumed run starts from may be in the film already, or lie between two output times.
-    const int number = folder_->outputs() - 1;
-    if (pictures_ && (written || !fs::exists(folder_path_ / "pictures" / fmt::format("picture_{:06}.png", number))))
-      folder_->count(pictures_->add(frame_from_world(world, scene_.title), number));
-    output_s_ += seconds_since(start);
-    if (world.step > 0) checkpoint_when_due(world);
-    check_disk(world);
+    const bool checkpoint = world.step > 0 && checkpoint_due();
+    writer_.post([this, report, checkpoint, copy = std::make_shared<const World>(world), title = scene_.title,
+                  most = scene_.limits.max_disk] {  // a replayed log may change the scene meanwhile
+      const bool written = folder_->write_output(*copy, report);
+      // The state a resumed run starts from may be in the film already, or lie between two output times.
+      const int number = folder_->outputs() - 1;
+      if (pictures_ && (written || !fs::exists(folder_path_ / "pictures" / fmt::format("picture_{:06}.png", number))))
+        folder_->count(pictures_->add(frame_from_world(*copy, title), number));
+      if (checkpoint) folder_->write_checkpoint(*copy);
+      check_disk(*copy, most);
+    });
+    waited_s_ += seconds_since(start);
   }
 
   bool is_output_time(const World& world) const {
@@ -244,14 +271,20 @@ class RunSession {
     return world.time >= scene_.duration || std::abs(intervals - std::round(intervals)) < 1e-6;
   }
 
-  void checkpoint_when_due(const World& world) {
-    if (seconds_since(last_checkpoint_) < scene_.output.checkpoint_every.value_or(60)) return;
-    folder_->write_checkpoint(world);
+  bool checkpoint_due() {
+    if (seconds_since(last_checkpoint_) < scene_.output.checkpoint_every.value_or(60)) return false;
     last_checkpoint_ = std::chrono::steady_clock::now();
+    return true;
   }
 
-  void check_disk(const World& world) const {
-    const Real most = scene_.limits.max_disk;
+  void checkpoint_when_due(const World& world) {
+    if (!checkpoint_due()) return;
+    const auto start = std::chrono::steady_clock::now();
+    writer_.post([this, copy = std::make_shared<const World>(world)] { folder_->write_checkpoint(*copy); });
+    waited_s_ += seconds_since(start);
+  }
+
+  void check_disk(const World& world, Real most) const {
     if (folder_->bytes() <= most) return;
     throw InputError(fmt::format(
         "stopped at t = {:.6g} s: the run folder holds {:.4g} MB, more than limits.max_disk = {:.4g} MB; "
@@ -284,8 +317,9 @@ class RunSession {
     const fs::path report = write_report(folder_path_);
     std::printf("%s after %.1f s of wall time\n", status == RunStatus::done ? "done" : reason.c_str(),
                 seconds_since(started_));
-    std::printf("  of it       liquid %.1f s (%llu steps), network %.1f s (%llu steps), files and pictures %.1f s\n", liquid_s_,
-                static_cast<unsigned long long>(moved_), wetting_s_, static_cast<unsigned long long>(wetted_), output_s_);
+    std::printf("  of it       liquid %.1f s (%llu steps), network %.1f s (%llu steps), waiting for output %.1f s\n", liquid_s_,
+                static_cast<unsigned long long>(moved_), wetting_s_, static_cast<unsigned long long>(wetted_), waited_s_);
+    std::printf("  beside it   files and pictures %.1f s\n", writer_.working_s());
     if (moved_ > 0)
       std::printf("  liquid      largest compression of a particle %.2g %%\n", 100 * peak_density_error_);
     if (contact_.textile_boxes > 0)
@@ -326,11 +360,12 @@ class RunSession {
   std::optional<ChangeReplay> changes_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RunPictures> pictures_;
-  double liquid_s_ = 0, wetting_s_ = 0, output_s_ = 0, peak_density_error_ = 0;
+  double liquid_s_ = 0, wetting_s_ = 0, waited_s_ = 0, peak_density_error_ = 0;
   std::uint64_t moved_ = 0, wetted_ = 0;
   ContactCounts contact_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_,
                                         memory_looked_at_ = started_;
+  BackgroundWriter writer_;  // last: its thread uses what is above
 };
 
 }  // namespace

@@ -161,7 +161,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   Particles& particles = liquid.particles;
   StageTimer timer;
 
-  sort_particles(f.neighbours, particles, kernel_for(liquid.spacing()));
+  sort_particles(f.neighbours, particles, Kernel(params.support * liquid.spacing()));
   begin_fields(f, liquid);
   report.times.sort = timer.lap();
   sample_walls(f.boundary, f.position, f.count, walls, f.neighbours.kernel);

@@ -33,6 +33,7 @@ namespace imbibe {
 struct LiquidParams {
   Real convective_factor = 0.4;      // step <= factor dx/|u|max, and factor for |a|
   Real capillary_factor = 0.5;       // step <= factor sqrt(rho dx^3/(2 pi gamma))
+  Real support = support_over_spacing;  // H/dx; 2 has 32 neighbours at half the cost, too few for surface tension
   Real position_correction = 0.5;     // part of the density error undone per step by moving particles; 0: by velocity
   Real max_density_error = 1e-3;     // mean relative error that this correction may leave
   bool surface_tension = true;
@@ -47,6 +48,9 @@ void describe(V& v, LiquidParams& p) {
           {.min = 0, .max = 1, .above_min = true, .help = "largest move of a particle per step, in spacings"});
   v.value("capillary_factor", p.capillary_factor,
           {.min = 0, .max = 2, .above_min = true, .help = "longest step, in shortest capillary times"});
+  v.value("support", p.support,
+          {.min = 1.9, .max = 4, .help = "reach of the kernel in spacings: 2 has 32 neighbours and half the cost of 2.5, "
+                                       "for liquid without surface tension"});
   v.value("position_correction", p.position_correction,
           {.min = 0, .max = 1, .help = "part of the density error undone per step by moving particles without giving "
                                        "them velocity; 0: the error fades through the velocity (pressure.density_time)"});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
 
 namespace imbibe {
@@ -37,23 +38,26 @@ void find_places(const GraphMatrix& m, BlockFactors& f) {
   parallel_tiles(n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Index first = m.row_start[i];
-      Index last = first;
+      IMBIBE_ASSERT(m.row_start[i + 1] - first < BlockFactors::dropped);
+      std::uint16_t* columns = f.column.data() + first;
+      std::uint16_t last = 0;
       for (Index k = first; k < m.row_start[i + 1]; ++k) {
-        const Index column = m.column[k];
-        if (column < begin || column >= end) continue;
-        Index at = last;
-        while (at > first && f.column[at - 1] > column) --at;
-        if (at > first && f.column[at - 1] == column) continue;
-        for (Index j = last++; j > at; --j) f.column[j] = f.column[j - 1];
-        f.column[at] = column;
+        if (m.column[k] < begin || m.column[k] >= end) continue;
+        const auto column = static_cast<std::uint16_t>(m.column[k] - begin);
+        std::uint16_t at = last;
+        while (at > 0 && columns[at - 1] > column) --at;
+        if (at > 0 && columns[at - 1] == column) continue;
+        std::copy_backward(columns + at, columns + last, columns + last + 1);
+        ++last;
+        columns[at] = column;
       }
       for (Index k = first; k < m.row_start[i + 1]; ++k) {
-        const auto end_of_row = f.column.begin() + last;
-        const auto at = std::find(f.column.begin() + first, end_of_row, m.column[k]);
-        f.place[k] = at == end_of_row ? no_index : static_cast<Index>(at - f.column.begin());
+        const std::uint16_t* at = columns + last;
+        if (m.column[k] >= begin && m.column[k] < end) at = std::find(columns, columns + last, m.column[k] - begin);
+        f.place[k] = at == columns + last ? BlockFactors::dropped : static_cast<std::uint16_t>(at - columns);
       }
-      f.first[i] = first, f.last[i] = last, f.upper[i] = first;
-      while (f.upper[i] < last && f.column[f.upper[i]] < i) ++f.upper[i];
+      f.first[i] = first, f.last[i] = last, f.upper[i] = 0;
+      while (f.upper[i] < last && columns[f.upper[i]] < i - begin) ++f.upper[i];
     }
   }, factor_block);
   f.pattern = m.pattern;
@@ -64,20 +68,21 @@ void factorise_block(BlockFactors& f, std::size_t begin, std::size_t end) {
   std::array<Index, factor_block> place;
   std::fill_n(place.begin(), end - begin, no_index);
   for (std::size_t i = begin; i < end; ++i) {
-    for (Index k = f.first[i]; k < f.last[i]; ++k) place[f.column[k] - begin] = k;
-    for (Index k = f.first[i]; k < f.upper[i]; ++k) {
-      const Index j = f.column[k];
-      const Real lower = f.value[k] *= f.inverse_diagonal[j];
-      for (Index n = f.upper[j]; n < f.last[j]; ++n) {
-        const Index c = f.column[n];
-        if (c == i) {
+    const Index first = f.first[i], upper = first + f.upper[i], last = first + f.last[i];
+    for (Index k = first; k < last; ++k) place[f.column[k]] = k;
+    for (Index k = first; k < upper; ++k) {
+      const std::size_t j = begin + f.column[k];
+      const float lower = f.value[k] *= f.inverse_diagonal[j];
+      for (Index n = f.first[j] + f.upper[j]; n < f.first[j] + f.last[j]; ++n) {
+        const std::size_t c = f.column[n];
+        if (begin + c == i) {
           f.inverse_diagonal[i] -= lower * f.value[n];
-        } else if (place[c - begin] != no_index) {
-          f.value[place[c - begin]] -= lower * f.value[n];
+        } else if (place[c] != no_index) {
+          f.value[place[c]] -= lower * f.value[n];
         }
       }
     }
-    for (Index k = f.first[i]; k < f.last[i]; ++k) place[f.column[k] - begin] = no_index;
+    for (Index k = first; k < last; ++k) place[f.column[k]] = no_index;
     f.inverse_diagonal[i] = 1 / f.inverse_diagonal[i];
   }
 }
@@ -86,10 +91,11 @@ void factorise(const GraphMatrix& m, BlockFactors& f) {
   if (m.pattern == 0 || f.pattern != m.pattern) find_places(m, f);
   parallel_tiles(m.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      f.inverse_diagonal[i] = m.diagonal[i];
-      for (Index k = f.first[i]; k < f.last[i]; ++k) f.value[k] = 0;
+      f.inverse_diagonal[i] = static_cast<float>(m.diagonal[i]);
+      const Index first = f.first[i];
+      for (Index k = first; k < first + f.last[i]; ++k) f.value[k] = 0;
       for (Index k = m.row_start[i]; k < m.row_start[i + 1]; ++k) {
-        if (f.place[k] != no_index) f.value[f.place[k]] += m.value[k];
+        if (f.place[k] != BlockFactors::dropped) f.value[first + f.place[k]] += static_cast<float>(m.value[k]);
       }
     }
     factorise_block(f, begin, end);
@@ -99,15 +105,18 @@ void factorise(const GraphMatrix& m, BlockFactors& f) {
 // x = (L U)^-1 b, block by block.
 void apply_factors(const BlockFactors& f, std::span<const Real> b, std::span<Real> x) {
   parallel_tiles(x.size(), [&](std::size_t begin, std::size_t end) {
+    Real* own = x.data() + begin;
     for (std::size_t i = begin; i < end; ++i) {
       Real sum = b[i];
-      for (Index k = f.first[i]; k < f.upper[i]; ++k) sum -= f.value[k] * x[f.column[k]];
+      const Index first = f.first[i], upper = first + f.upper[i];
+      for (Index k = first; k < upper; ++k) sum -= static_cast<Real>(f.value[k]) * own[f.column[k]];
       x[i] = sum;
     }
     for (std::size_t i = end; i-- > begin;) {
       Real sum = x[i];
-      for (Index k = f.last[i]; k-- > f.upper[i];) sum -= f.value[k] * x[f.column[k]];
-      x[i] = sum * f.inverse_diagonal[i];
+      const Index upper = f.first[i] + f.upper[i], last = f.first[i] + f.last[i];
+      for (Index k = upper; k < last; ++k) sum -= static_cast<Real>(f.value[k]) * own[f.column[k]];
+      x[i] = sum * static_cast<Real>(f.inverse_diagonal[i]);
     }
   }, factor_block);
 }
@@ -126,7 +135,7 @@ LinearSolve solve_bicgstab(const GraphMatrix& matrix, std::span<const Real> righ
                            Real tolerance, Real floor, int most_iterations, LinearWorkspace& w) {
   const std::size_t n = matrix.rows();
   LinearSolve report;
-  for (auto* vector : {&w.r, &w.r0, &w.p, &w.v, &w.s, &w.t, &w.y, &w.z}) vector->assign(n, 0);
+  for (auto* vector : {&w.r, &w.r0, &w.p, &w.v, &w.t, &w.y}) vector->assign(n, 0);
   std::fill(x.begin(), x.end(), 0);
   std::copy(right_hand_side.begin(), right_hand_side.end(), w.r.begin());
   report.residual = largest_entry(w.r);
@@ -149,14 +158,17 @@ LinearSolve solve_bicgstab(const GraphMatrix& matrix, std::span<const Real> righ
     multiply(matrix, w.y, w.v);
     alpha = rho / dot_product(w.r0, w.v);
     if (!std::isfinite(alpha)) break;
-    parallel_for(n, [&](std::size_t i) { w.s[i] = w.r[i] - alpha * w.v[i]; }, sum_tile);
-    apply_factors(w.factors, w.s, w.z);
-    multiply(matrix, w.z, w.t);
+    parallel_for(n, [&](std::size_t i) {  // r is the half-way residual until the end
+      x[i] += alpha * w.y[i];
+      w.r[i] -= alpha * w.v[i];
+    }, sum_tile);
+    apply_factors(w.factors, w.r, w.y);
+    multiply(matrix, w.y, w.t);
     const Real tt = dot_product(w.t, w.t);
-    omega = tt > 0 ? dot_product(w.t, w.s) / tt : 0;
+    omega = tt > 0 ? dot_product(w.t, w.r) / tt : 0;
     parallel_for(n, [&](std::size_t i) {
-      x[i] += alpha * w.y[i] + omega * w.z[i];
-      w.r[i] = w.s[i] - omega * w.t[i];
+      x[i] += omega * w.y[i];
+      w.r[i] -= omega * w.t[i];
     }, sum_tile);
     report.residual = largest_entry(w.r);
     if (!std::isfinite(report.residual)) break;

@@ -32,7 +32,7 @@ struct GraphMatrix {
 
 void multiply(const GraphMatrix& matrix, std::span<const Real> x, std::span<Real> result);
 
-inline constexpr std::size_t factor_block = 4096;  // rows; entries between blocks stay out of the factors
+inline constexpr std::size_t factor_block = 4096;  // rows; entries between blocks stay out of the factors; < 65536
 
 struct LinearSolve {
   int iterations = 0;
@@ -40,18 +40,22 @@ struct LinearSolve {
   Real residual = 0;  // largest entry of |b - A x|
 };
 
-// ILU(0) of the blocks on the diagonal. Row i has its entries below the diagonal in [first[i], upper[i]), those above in
-// [upper[i], last[i]), columns ascending. `place` leads from an entry of the matrix to its own (no_index: dropped).
+// ILU(0) of the blocks on the diagonal. Row i of the factors begins where the matrix's row begins; its entries below the
+// diagonal are [first, first + upper), those above [first + upper, first + last), columns ascending and counted from the
+// block's first row. `place` leads from an entry of the matrix to its own in the row (dropped: none). Single precision: a
+// preconditioner only has to be near, and the solver waits for memory, not for arithmetic.
 struct BlockFactors {
-  std::vector<Index> first, upper, last, column, place;
-  std::vector<Real> value, inverse_diagonal;
+  static constexpr std::uint16_t dropped = 0xffff;
+  std::vector<Index> first;
+  std::vector<std::uint16_t> upper, last, column, place;
+  std::vector<float> value, inverse_diagonal;
   std::uint64_t pattern = 0;
 };
 
 // Scratch of the solver; reused between solves.
 struct LinearWorkspace {
   BlockFactors factors;
-  std::vector<Real> r, r0, p, v, s, t, y, z;
+  std::vector<Real> r, r0, p, v, t, y;
 };
 
 LinearSolve solve_bicgstab(const GraphMatrix& matrix, std::span<const Real> right_hand_side, std::span<Real> x,
