@@ -31,6 +31,7 @@ void BackgroundWriter::work() {
     jobs_.pop_front();
     busy_ = true;
     lock.unlock();
+    changed_.notify_all();  // there is room for one more
     const auto start = Clock::now();
     std::exception_ptr thrown;
     try {
