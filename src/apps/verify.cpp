@@ -57,10 +57,15 @@ int go(VerifyArguments a, const CommandContext& context) {
   if (a.threads > 0) limit = std::make_unique<ThreadLimit>(a.threads);
   a.choice.pictures = !a.no_pictures;
   const fs::path scenes = scene_folder(context);
-  verify::Verification v =
-      verify::run_cases(a.choice, scenes, read_library(library_folders(scenes / "x.yaml", context.data_folders)), show);
-  v.command = context.command_line;
-  verify::write_report(v, a.output);
+  // Written after each case: a run that is stopped leaves what it had.
+  const auto keep = [&](const verify::Verification& so_far) {
+    show(so_far.outcomes.back());
+    verify::Verification report = so_far;
+    report.command = context.command_line;
+    verify::write_report(report, a.output);
+  };
+  const verify::Verification v =
+      verify::run_cases(a.choice, scenes, read_library(library_folders(scenes / "x.yaml", context.data_folders)), keep);
   int failed = 0;
   for (const verify::CaseOutcome& o : v.outcomes) failed += !o.passed();
   std::printf("%zu of %zu cases passed; report: %s\n", v.outcomes.size() - static_cast<std::size_t>(failed), v.outcomes.size(),

@@ -104,5 +104,64 @@ TEST(Source, is_a_value_whose_copy_continues_alike) {
   EXPECT_EQ(dropper.carried, copy.carried);
 }
 
+TEST(Source, a_stretched_drop_is_an_ellipsoid_of_its_volume) {
+  Liquid liquid = empty_liquid();
+  Source drop{.centre = {0, 0, 0}, .volume = 30e-9};
+  drop.stretch = {1, 1, 2};
+  emit(drop, liquid, 0, 1);
+  Vec3 square{};
+  const auto n = static_cast<Real>(liquid.particles.size());
+  for (const Float4& p : liquid.particles.position) square += Vec3{p.x * p.x, p.y * p.y, p.z * p.z} / n;
+  // Second moments of an ellipsoid are a^2/5 of its half axes, a = R/2^(1/3) and 2 a.
+  const Real a = std::cbrt(3 * 30e-9 / (4 * pi) / 2);
+  EXPECT_NEAR(std::sqrt(5 * square.x), a, 0.01 * a);  // a lattice of 3750 points
+  EXPECT_NEAR(std::sqrt(5 * square.z), 2 * a, 0.02 * a);
+  const Bounds b = bounds_of(drop);
+  EXPECT_NEAR(b.upper.z, 2 * a, 1e-9);
+  EXPECT_NEAR(b.upper.x, a, 1e-9);
+}
+
+TEST(Source, a_cap_stands_on_its_base_with_its_height_and_width) {
+  for (const Real degrees_ : {40.0, 90.0, 140.0}) {
+    Liquid liquid = empty_liquid();
+    Source drop{.centre = {1e-3, 0, 2e-3}, .volume = 30e-9};
+    drop.cap_angle = radians(degrees_);
+    emit(drop, liquid, 0, 1);
+    const Real c = std::cos(drop.cap_angle), radius = std::cbrt(3 * 30e-9 / (pi * (2 + c) * (1 - c) * (1 - c)));
+    const Bounds b = bounds_of(drop);
+    EXPECT_NEAR(b.upper.z - b.lower.z, radius * (1 - c), 1e-9);
+    Real lowest = 1, highest = 0, widest = 0;
+    for (const Float4& p : liquid.particles.position) {
+      lowest = std::min<Real>(lowest, p.z), highest = std::max<Real>(highest, p.z);
+      widest = std::max<Real>(widest, std::hypot(p.x - 1e-3, p.y));
+    }
+    const Real dx = liquid.spacing();
+    EXPECT_NEAR(lowest, 2e-3 + 0.5 * dx, 1e-6);  // positions are single-precision
+    EXPECT_NEAR(highest, 2e-3 + radius * (1 - c), dx) << degrees_;
+    EXPECT_NEAR(widest, b.upper.x - 1e-3, dx) << degrees_;
+    EXPECT_NEAR(liquid.mass() / liquid.kind.density, 30e-9, 0.5 * dx * dx * dx);
+  }
+}
+
+TEST(Source, a_vortex_has_no_flow_through_the_sides_of_its_box_and_no_net_momentum) {
+  Liquid liquid = empty_liquid();
+  Source box{.form = SourceForm::box, .centre = {0, 0, 0}, .size = {8e-3, 4e-3, 1e-3}};
+  box.vortex = 0.1;
+  emit(box, liquid, 0, 1);
+  Vec3 sum{};
+  Real fastest = 0;
+  for (std::size_t i = 0; i < liquid.particles.size(); ++i) {
+    const Float4 &x = liquid.particles.position[i], &u = liquid.particles.velocity[i];
+    sum += Vec3{u.x, u.y, u.z} / static_cast<Real>(liquid.particles.size());
+    fastest = std::max<Real>(fastest, std::abs(u.x));
+    // sin(pi x/a) at half a spacing from the side
+    if (std::abs(x.x) > 3.85e-3) {
+      EXPECT_LE(std::abs(u.x), 0.1 * std::sin(pi * 0.1e-3 / 8e-3) * 1.01);
+    }
+  }
+  EXPECT_LT(norm(sum), 1e-6);  // symmetric lattice, single precision
+  EXPECT_NEAR(fastest, 0.1, 0.01);  // the lattice does not hit the very middle of a side
+}
+
 }  // namespace
 }  // namespace imbibe

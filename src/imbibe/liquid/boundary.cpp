@@ -298,6 +298,8 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, Boundary::M
   out.shear = static_cast<float>(wall.material.friction *
                                  half_space_shear(std::max(nearest.distance, nearest_layer), support));
   out.friction = static_cast<float>(wall.material.friction);
+  const Vec3f velocity(wall.material.velocity);
+  out.velocity = velocity - dot(velocity, out.normal) * out.normal;
   out.wall = w.index;
   out.foot = no_index;
   return true;

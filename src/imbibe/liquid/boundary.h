@@ -31,6 +31,7 @@ struct WallSample {
   float cos_contact_angle = 0;
   float cos_receding_angle = 0;  // the same without hysteresis
   float friction = 0;
+  Vec3f velocity{};             // of the surface along itself, m/s
   float shear = 0;              // friction * half_space_shear (kernel.h), 1/m2
   Index wall = 0;               // index into the walls of this step
   Index foot = no_index;        // of a soft sheet: index into the tile's feet
@@ -68,7 +69,7 @@ struct Boundary {
   }
   // Velocity of the wall at a sample of particle i, m/s; and impulse (N s) that the liquid gives it there.
   Vec3f wall_velocity(std::size_t i, const WallSample& s) const {
-    return s.foot == no_index ? Vec3f{} : tiles[i / default_tile_size].feet[s.foot].velocity;
+    return s.foot == no_index ? s.velocity : tiles[i / default_tile_size].feet[s.foot].velocity;
   }
   void give(std::size_t i, const WallSample& s, const Vec3& impulse) {
     if (s.foot != no_index) tiles[i / default_tile_size].feet[s.foot].impulse += impulse;

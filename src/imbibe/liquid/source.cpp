@@ -23,20 +23,36 @@ std::size_t rounded_count(Real volume, Real particle_volume) {
   return static_cast<std::size_t>(std::max(0.0, std::round(volume / particle_volume)));
 }
 
-// The `count` points of a cubic lattice nearest to the origin (at a cell's corner, so that all eight octants are equal).
-std::vector<Vec3> ball_lattice(std::size_t count, Real spacing) {
+// Half axes of the unit ball stretched at constant volume.
+Vec3 unit_axes(const Source& s) {
+  const Real mean = portable::cbrt(s.stretch.x * s.stretch.y * s.stretch.z);
+  return s.stretch / mean;
+}
+
+Real cap_radius(const Source& s) {
+  const Real c = portable::cos(s.cap_angle);
+  return portable::cbrt(3 * s.volume / (pi * (2 + c) * (1 - c) * (1 - c)));
+}
+
+// The `count` points of a cubic lattice that lie deepest in the ball, ellipsoid or cap of the source. The lattice's
+// corner lies in the centre, so that all eight octants of a ball are equal.
+std::vector<Vec3> drop_lattice(const Source& s, std::size_t count, Real spacing) {
+  const bool cap = s.cap_angle > 0;
+  const Vec3 axes = unit_axes(s);
+  const Real foot = cap ? -cap_radius(s) * portable::cos(s.cap_angle) / spacing : 0;  // height of the sphere's centre
   struct Point {
     Real square;
     Vec3 at;
   };
-  const Real radius = portable::cbrt(3.0 / (4 * pi) * static_cast<Real>(count));
-  const int reach = static_cast<int>(std::ceil(radius)) + 2;
+  const Real radius = cap ? cap_radius(s) / spacing : portable::cbrt(3.0 / (4 * pi) * static_cast<Real>(count));
+  const int reach = static_cast<int>(std::ceil(radius * std::max({axes.x, axes.y, axes.z}))) + 2;
   std::vector<Point> points;
-  for (int z = -reach; z < reach; ++z) {
+  for (int z = cap ? 0 : -reach; z < (cap ? static_cast<int>(radius + std::max(foot, -radius)) + 3 : reach); ++z) {
     for (int y = -reach; y < reach; ++y) {
       for (int x = -reach; x < reach; ++x) {
         const Vec3 p{x + 0.5, y + 0.5, z + 0.5};
-        if (squared_norm(p) <= (radius + 2) * (radius + 2)) points.push_back({squared_norm(p), p});
+        const Real square = squared_norm(Vec3{p.x / axes.x, p.y / axes.y, (p.z - foot) / axes.z});
+        if (square <= (radius + 2) * (radius + 2)) points.push_back({square, p});
       }
     }
   }
@@ -129,6 +145,12 @@ EmitReport emit_from_pipe(Source& source, Liquid& liquid, Real t1) {
   return report;
 }
 
+// Velocity at place x of a box (from its middle) by its vortex.
+Vec3 vortex_velocity(const Source& s, const Vec3& x) {
+  const Real u = pi * (x.x / s.size.x + 0.5), v = pi * (x.y / s.size.y + 0.5);
+  return s.vortex * Vec3{portable::sin(u) * portable::cos(v), -s.size.y / s.size.x * portable::cos(u) * portable::sin(v), 0};
+}
+
 }  // namespace
 
 Real next_emission(const Source& source) {
@@ -155,7 +177,11 @@ Bounds bounds_of(const Source& source) {
     return {b.lower - half, b.upper + half};
   }
   const Real radius = portable::cbrt(3 * source.volume / (4 * pi));
-  const Vec3 half = source.form == SourceForm::box ? 0.5 * source.size : Vec3{radius, radius, radius};
+  if (source.form == SourceForm::drop && source.cap_angle > 0) {
+    const Real r = cap_radius(source), wide = source.cap_angle > pi / 2 ? r : r * portable::sin(source.cap_angle);
+    return {source.centre - Vec3{wide, wide, 0}, source.centre + Vec3{wide, wide, r * (1 - portable::cos(source.cap_angle))}};
+  }
+  const Vec3 half = source.form == SourceForm::box ? 0.5 * source.size : radius * unit_axes(source);
   return {source.centre - half, source.centre + half};
 }
 
@@ -169,12 +195,15 @@ EmitReport emit(Source& source, Liquid& liquid, Real t0, Real t1) {
     const std::size_t count = rounded_count(wanted, particle_volume);
     const std::vector<Vec3> points = source.form == SourceForm::box
                                          ? box_lattice(count, source.size, liquid.spacing())
-                                         : ball_lattice(count, liquid.spacing());
+                                         : drop_lattice(source, count, liquid.spacing());
     if (occupied(source, points, liquid)) {
       report.waiting = true;
       break;
     }
-    for (const Vec3& p : points) add_particle(liquid, source.centre + p, source.velocity);
+    for (const Vec3& p : points) {
+      const bool turning = source.form == SourceForm::box && source.vortex != 0;
+      add_particle(liquid, source.centre + p, turning ? source.velocity + vortex_velocity(source, p) : source.velocity);
+    }
     const Real kg = static_cast<Real>(count) * liquid.particle_mass;
     source.carried = wanted - static_cast<Real>(count) * particle_volume;
     source.supplied_kg += kg;

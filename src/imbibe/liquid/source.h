@@ -1,5 +1,8 @@
 // Where liquid comes from: drops, boxes of liquid, a timed dropper (a drop repeated), and a pipe.
 //
+// A drop is born as a ball, as an ellipsoid of its volume, or as a spherical cap on a level plane at its centre.
+//   cap     R = (3 V/(pi (2 + cos a)(1 - cos a)^2))^(1/3), its sphere's centre R cos a under the base
+//   vortex  u = U sin(pi x/a) cos(pi y/b), v = -U (b/a) cos(pi x/a) sin(pi y/b), x and y from the box's corner, a x b its size
 // A pipe lets go single particles at a steady rate, each from a random place inside its bore (counter-based random: seed,
 // number of the particle), with a constant velocity along it. Particles due since the last step are carried on by what
 // they would have flown. Where eight random places are all taken, the particle waits.
@@ -28,6 +31,9 @@ struct Source {
   Real volume = 0;           // m3 of each drop; of a box, 0 = its size
   Vec3 size{};               // m, of a box
   Vec3 velocity{};           // m/s at birth
+  Vec3 stretch{1, 1, 1};     // of a drop: relative half axes of its ellipsoid
+  Real cap_angle = 0;        // rad, > 0: the drop is born as a spherical cap of this angle, `centre` the middle of its base
+  Real vortex = 0;           // m/s, of a box: greatest speed of one Taylor-Green cell that fills it in x and y
   Real start = 0;            // s
   Real interval = 0;         // s between drops of a dropper
   int count = 1;             // drops; of a pipe, particles

@@ -77,7 +77,9 @@ ViscosityReport solve_implicit(LiquidFields& f, const ViscosityParams& params, f
     f.direction[i] = f.residual[i];
   });
   double square = inner(f.residual, f.residual, n);
-  const double goal = params.tolerance * params.tolerance * inner(f.velocity, f.velocity, n);
+  // Liquid at rest that a wall is about to set in motion is measured against that.
+  const double before = inner(f.velocity, f.velocity, n);
+  const double goal = params.tolerance * params.tolerance * (before > 0 ? before : square);
   ViscosityReport report;
   while (square > goal && report.iterations < params.max_iterations) {
     implicit_operator(f, f.direction, viscosity, dt, params.wall_friction, true, product);

@@ -2,7 +2,8 @@
 //
 //   a_i = nu sum_j 10 V (u_ij . x_ij)/r^2 grad W      (factor 2 (dim + 2) = 10)
 //   wall: a_i = -friction nu half_space_shear(d_i) u_t    the same sum over the solid, whose velocity continues the
-//         liquid's linearly through zero at the surface (kernel.h); u_t tangential
+//         liquid's linearly through the surface's own velocity (zero unless it runs as a belt; kernel.h); u_t tangential,
+//         against the surface
 //   u_ij = u_i - u_j [m/s], x_ij = x_i - x_j [m], nu = eta/rho0 [m2/s], eta dynamic viscosity [Pa s], V = m/rho0 [m3]
 // Sources: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543 (form along the line of centres); Cleary & Monaghan,
 // J. Comput. Phys. 148 (1999) 227; walls by linear continuation: Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214.

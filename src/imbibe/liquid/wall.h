@@ -16,6 +16,7 @@ struct WallMaterial {
   Real contact_angle = pi / 2;  // rad, equilibrium or advancing
   Real receding_angle = -1;     // rad; < 0: no hysteresis, same as contact_angle
   Real friction = 1;            // 0 = free slip, 1 = the liquid's own viscosity acts at the wall (no slip)
+  Vec3 velocity{};              // m/s, of the surface along itself (a belt); its normal part has no effect
 };
 
 // Cosines of the angles at one place; cos_receding >= cos_advancing, equal without hysteresis.

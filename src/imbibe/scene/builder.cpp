@@ -167,6 +167,7 @@ void add_solid(const Scene& scene, std::size_t i, World& world, std::vector<Prob
     body.material.contact_angle = spec.contact_angle;
     body.material.receding_angle = spec.receding_angle.value_or(-1);
     body.material.friction = spec.friction;
+    body.material.velocity = spec.surface_velocity;
     body.colour = Vec3f(spec.colour);
     world.solids.push_back(std::move(body));
   } catch (const InputError& error) {
@@ -236,6 +237,7 @@ std::vector<Source> sources_of(const Scene& scene) {
     s.name = drop.name.empty() ? fallback : drop.name;
     s.form = SourceForm::drop;
     s.centre = drop.centre, s.volume = drop.volume, s.velocity = drop.velocity, s.start = drop.start;
+    s.stretch = drop.stretch, s.cap_angle = drop.cap_angle.value_or(0);
     return s;
   };
   const LiquidSpec& liquid = scene.liquid;
@@ -246,6 +248,7 @@ std::vector<Source> sources_of(const Scene& scene) {
     s.name = box.name.empty() ? fmt::format("box {}", i + 1) : box.name;
     s.form = SourceForm::box;
     s.centre = box.centre, s.size = box.size, s.velocity = box.velocity, s.start = box.start;
+    s.vortex = box.vortex;
   }
   for (std::size_t i = 0; i < liquid.droppers.size(); ++i) {
     const DropperSpec& dropper = liquid.droppers[i];
@@ -307,6 +310,7 @@ RunPlan run_plan(const Scene& scene) {
   plan.every = output_interval(scene);
   plan.max_steps = scene.limits.max_steps ? static_cast<std::uint64_t>(*scene.limits.max_steps) : 0;
   if (scene.limits.max_step) plan.step.max_step = *scene.limits.max_step;
+  plan.step.rest_allowed = scene.liquid.rest;
   return plan;
 }
 

@@ -36,32 +36,40 @@ Real distance_to_box(const Vec3& p, const Vec3& half) {
   return norm(outside) + std::min(std::max({q.x, q.y, q.z}), 0.0);
 }
 
-// How deep a source reaches into something whose signed distance is `distance(point)`. Exact for drops; boxes are
-// tried at the points of a 5 x 5 x 5 lattice on and in them.
+// How deep a source reaches into something whose signed distance is `distance(point)`. Exact for balls; other forms
+// by their bounding box, tried at the points of a 5 x 5 x 5 lattice on and in them.
 template <class Distance>
 Real depth_inside(const Source& s, Distance&& distance) {
   const Vec3 half = half_size(s);
-  if (s.form == SourceForm::drop) return (1 - forgiven_share) * half.x - distance(s.centre);
+  const bool ball = s.form == SourceForm::drop && s.cap_angle <= 0 && s.stretch == Vec3{1, 1, 1};
+  const Bounds bounds = bounds_of(s);
+  const Vec3 middle = 0.5 * (bounds.lower + bounds.upper);
+  if (ball) return (1 - forgiven_share) * half.x - distance(s.centre);
   Real deepest = -1e30;
   for (int i = -2; i <= 2; ++i)
     for (int j = -2; j <= 2; ++j)
       for (int k = -2; k <= 2; ++k) {
-        const Vec3 p = s.centre + (0.5 - 0.5 * forgiven_share) * Vec3{i * half.x, j * half.y, k * half.z};
+        const Vec3 p = middle + (0.5 - 0.5 * forgiven_share) * Vec3{i * half.x, j * half.y, k * half.z};
         deepest = std::max(deepest, -distance(p));
       }
   return deepest;
 }
 
+Real widest(const Source& s) {
+  const Vec3 half = half_size(s);
+  return std::max({half.x, half.y, half.z});
+}
+
 bool overlap(const Source& a, const Source& b) {
   if (a.form == SourceForm::drop && b.form == SourceForm::drop)
-    return norm(a.centre - b.centre) < (1 - forgiven_share) * (half_size(a).x + half_size(b).x);
+    return norm(a.centre - b.centre) < (1 - forgiven_share) * (widest(a) + widest(b));
   if (a.form == SourceForm::box && b.form == SourceForm::box) {
     const Vec3 d = a.centre - b.centre, sum = (1 - forgiven_share) * (half_size(a) + half_size(b));
     return std::abs(d.x) < sum.x && std::abs(d.y) < sum.y && std::abs(d.z) < sum.z;
   }
   const Source& drop = a.form == SourceForm::drop ? a : b;
   const Source& box = a.form == SourceForm::drop ? b : a;
-  return distance_to_box(drop.centre - box.centre, half_size(box)) < (1 - forgiven_share) * half_size(drop).x;
+  return distance_to_box(drop.centre - box.centre, half_size(box)) < (1 - forgiven_share) * widest(drop);
 }
 
 // Sources that start at the same time must not share room; a later one waits until its place is free. Sweep along x.

@@ -69,6 +69,8 @@ struct DropSpec {
   Real volume = 0;    // m3
   Vec3 velocity{};    // m/s
   Real start = 0;     // s
+  Vec3 stretch{1, 1, 1};
+  std::optional<Real> cap_angle;  // rad
 };
 
 template <class V>
@@ -76,11 +78,16 @@ void describe(V& v, DropSpec& p) {
   v.value("name", p.name, {.help = "name in the report"});
   v.value("centre", p.centre,
           {.unit = "m", .shown = "mm", .min = -farthest, .max = farthest, .required = true,
-           .help = "centre of the ball at its start"});
+           .help = "centre of the ball at its start; of a cap, the middle of its base"});
   v.value("volume", p.volume,
           {.unit = "m3", .shown = "uL", .min = 0, .max = 1, .above_min = true, .required = true, .help = "volume"});
   v.value("velocity", p.velocity, {.unit = "m/s", .min = -100, .max = 100, .help = "velocity at its start"});
   v.value("start", p.start, {.unit = "s", .min = 0, .help = "when it appears"});
+  v.value("stretch", p.stretch,
+          {.min = 0.05, .max = 20, .help = "relative half axes along x, y and z of an ellipsoid of this volume"});
+  v.value("cap_angle", p.cap_angle,
+          {.unit = "rad", .shown = "deg", .min = radians(5), .max = radians(175),
+           .help = "born as a spherical cap of this angle that stands on a level plane, in place of a ball"});
 }
 
 struct LiquidBoxSpec {
@@ -89,6 +96,7 @@ struct LiquidBoxSpec {
   Vec3 size{};      // m
   Vec3 velocity{};  // m/s
   Real start = 0;   // s
+  Real vortex = 0;  // m/s
 };
 
 template <class V>
@@ -101,6 +109,8 @@ void describe(V& v, LiquidBoxSpec& p) {
            .help = "lengths of its edges"});
   v.value("velocity", p.velocity, {.unit = "m/s", .min = -100, .max = 100, .help = "velocity at its start"});
   v.value("start", p.start, {.unit = "s", .min = 0, .help = "when it appears"});
+  v.value("vortex", p.vortex, {.unit = "m/s", .min = -100, .max = 100,
+                               .help = "greatest speed of a Taylor-Green vortex about z that fills it, on top of velocity"});
 }
 
 struct DropperSpec {
@@ -156,6 +166,7 @@ struct LiquidSpec {
   std::vector<LiquidBoxSpec> boxes;
   std::vector<DropperSpec> droppers;
   std::vector<PipeSpec> pipes;
+  bool rest = true;
   LiquidParams solver;
 };
 
@@ -169,6 +180,7 @@ void describe(V& v, LiquidSpec& p) {
   v.list("boxes", p.boxes, "boxes of liquid");
   v.list("droppers", p.droppers, "drops that repeat at an interval");
   v.list("pipes", p.pipes, "pipes that let a jet of particles go");
+  v.value("rest", p.rest, {.help = "liquid whose shape no longer changes makes no more steps; false: it always moves"});
   v.group("solver", p.solver, "accuracy of the flow solver");
 }
 
@@ -266,6 +278,7 @@ struct SolidSpec {
   Real contact_angle = pi / 2;         // rad
   std::optional<Real> receding_angle;  // rad
   Real friction = 1;
+  Vec3 surface_velocity{};             // m/s
   Vec3 colour{0.55, 0.55, 0.58};
 };
 
@@ -278,6 +291,9 @@ void describe(V& v, SolidSpec& p) {
   v.value("receding_angle", p.receding_angle,
           {.unit = "rad", .shown = "deg", .min = 0, .max = pi, .help = "default: no hysteresis"});
   v.value("friction", p.friction, {.min = 0, .max = 1, .help = "0: liquid slips along it; 1: it sticks (no slip)"});
+  v.value("surface_velocity", p.surface_velocity,
+          {.unit = "m/s", .min = -100, .max = 100,
+           .help = "of its surface, which runs along itself as a belt does; only its part along the surface acts"});
   v.value("colour", p.colour, {.min = 0, .max = 1, .help = "linear red, green, blue"});
 }
 

@@ -125,6 +125,7 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   report.step_bound = liquid.bound;
   report.density_error = liquid.density_error;
   report.peak_density_error = liquid.peak_density_error;
+  report.surface_force = liquid.surface_force;
   report.pressure_iterations = liquid.pressure_iterations;
   report.divergence_iterations = liquid.divergence_iterations;
   report.converged = liquid.converged;

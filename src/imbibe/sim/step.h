@@ -26,6 +26,7 @@ struct StepReport {
   bool wetting_ran = false;
   Real density_error = 0;            // mean relative density error after the pressure solve
   Real peak_density_error = 0;       // largest of one particle
+  Vec3 surface_force{};              // N, of curvature on all drops that touch a wall
   int pressure_iterations = 0, divergence_iterations = 0;
   int wetting_iterations = 0;        // Newton iterations of all textiles
   std::size_t hits = 0;              // particles that would have entered a yarn and bounced

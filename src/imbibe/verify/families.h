@@ -15,5 +15,7 @@ void add_sorption(std::vector<Case>& cases);
 void add_drying(std::vector<Case>& cases);
 void add_printed(std::vector<Case>& cases);
 void add_coupled(std::vector<Case>& cases);
+void add_flows(std::vector<Case>& cases);
+void add_drops(std::vector<Case>& cases);
 
 }  // namespace imbibe::verify

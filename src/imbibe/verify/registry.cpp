@@ -6,6 +6,8 @@ namespace imbibe::verify {
 const std::vector<Case>& all_cases() {
   static const std::vector<Case> cases = [] {
     std::vector<Case> all;
+    add_flows(all);
+    add_drops(all);
     add_capillaries(all);
     add_yarn_transport(all);
     add_spreading(all);

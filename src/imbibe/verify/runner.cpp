@@ -33,7 +33,7 @@ std::vector<const Case*> chosen_cases(const RunChoice& choice) {
 }
 
 Verification run_cases(const RunChoice& choice, const std::filesystem::path& scene_folder, const Library& library,
-                       const std::function<void(const CaseOutcome&)>& done) {
+                       const std::function<void(const Verification&)>& done) {
   Verification verification;
   verification.quick = choice.quick;
   verification.version = IMBIBE_VERSION;
@@ -49,8 +49,8 @@ Verification run_cases(const RunChoice& choice, const std::filesystem::path& sce
     }
     outcome.result.commands = runner.take_commands();
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (done) done(outcome);
     verification.outcomes.push_back(std::move(outcome));
+    if (done) done(verification);
   }
   return verification;
 }

@@ -16,8 +16,8 @@ struct RunChoice {
 // Throws InputError naming every unknown name with its nearest.
 std::vector<const Case*> chosen_cases(const RunChoice& choice);
 
-// `scene_folder` is scenes/verify. `done` is called after each case.
+// `scene_folder` is scenes/verify. `done` is called after each case with all outcomes so far, this one last.
 Verification run_cases(const RunChoice& choice, const std::filesystem::path& scene_folder, const Library& library,
-                       const std::function<void(const CaseOutcome&)>& done = {});
+                       const std::function<void(const Verification&)>& done = {});
 
 }  // namespace imbibe::verify
