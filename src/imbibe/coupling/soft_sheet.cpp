@@ -151,13 +151,12 @@ Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real 
 
 Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
   const Sheet& sheet = soft.sheet;
-  if (scratch.surface.empty()) set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   find_held(sheet, scratch.held);
   scratch.inverse_mass.resize(sheet.size());
   for (std::size_t n = 0; n < sheet.size(); ++n)
     scratch.inverse_mass[n] = scratch.held[n] || !soft.moves() ? 0 : 1 / sheet.mass(n);
   scratch.wall.surface = &scratch.surface;
-  scratch.wall.velocity = sheet.velocity;
+  scratch.wall.velocity = scratch.wall_velocity;
   scratch.wall.inverse_mass = scratch.inverse_mass;
   scratch.wall.half_thickness = 0.5 * soft.cloth.hand.thickness;
   scratch.wall.impulse.assign(sheet.size(), Vec3{});
@@ -175,31 +174,39 @@ void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, Real dt) {
   soft.liquid_impulse += sum;
   const Real weight = total_mass(soft.sheet) * standard_gravity;
   if (soft.at_rest && norm(sum) > least_waking_share * weight * dt) soft.at_rest = false, soft.calm_s = 0;
-  if (!soft.moves()) {
-    soft.support_impulse -= sum;
-    scratch.force.clear();
-    return;
+  // The liquid went with the sheet as pushed by it: so does the sheet, in velocity and in place.
+  for (std::size_t n = 0; n < impulse.size(); ++n) {
+    if (scratch.inverse_mass[n] == 0) {
+      soft.support_impulse -= impulse[n];
+      continue;
+    }
+    const Vec3 change = scratch.inverse_mass[n] * impulse[n];
+    soft.sheet.velocity[n] += change;
+    soft.sheet.position[n] += dt * change;
   }
-  scratch.force.resize(impulse.size());
-  for (std::size_t n = 0; n < impulse.size(); ++n) scratch.force[n] = impulse[n] / dt;
 }
 
 ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
                               std::span<const ClothSolid> solids, Real dt) {
   ClothStepReport report;
   Sheet& sheet = soft.sheet;
+  if (scratch.surface.empty()) set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   scratch.before = sheet.position;
-  if (soft.moves()) {
-    report = step_cloth(sheet, soft.cloth, {.force = scratch.force, .gravity = gravity, .solids = solids, .measure = false}, dt, scratch.cloth);
-    soft.support_impulse += report.pin_impulse;
-    judge_rest(soft, dt);
-  } else {
+  scratch.wall_velocity.assign(sheet.size(), Vec3{});
+  if (!soft.moves()) {
     sheet.time += dt;
+    return report;
   }
-  scratch.force.clear();
-  set_step(scratch.surface, scratch.before, sheet.position, sheet.triangles);
-  find_held(sheet, scratch.held);
+  report = step_cloth(sheet, soft.cloth, {.gravity = gravity, .solids = solids, .measure = false}, dt, scratch.cloth);
+  soft.support_impulse += report.pin_impulse;
+  for (std::size_t n = 0; n < sheet.size(); ++n) scratch.wall_velocity[n] = (sheet.position[n] - scratch.before[n]) / dt;
   return report;
+}
+
+void finish_sheet(SoftSheet& soft, SoftSheetScratch& scratch, Real dt) {
+  if (soft.moves()) judge_rest(soft, dt);
+  set_step(scratch.surface, scratch.before, soft.sheet.position, soft.sheet.triangles);
+  find_held(soft.sheet, scratch.held);
 }
 
 void wake_if_heavier(SoftSheet& soft, Real share) {

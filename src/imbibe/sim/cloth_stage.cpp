@@ -47,19 +47,29 @@ Real longest_cloth_step(const World& world) {
   return longest;
 }
 
-void step_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report) {
+void advance_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report) {
   if (world.cell_cloths.empty()) return;
   const auto start = std::chrono::steady_clock::now();
   scratch.sheets_in_motion.resize(world.cell_cloths.size());
   const std::vector<ClothSolid> solids = solids_of(world);
+  for (std::size_t i = 0; i < world.cell_cloths.size(); ++i) {
+    SoftSheet& soft = world.cell_cloths[i].soft;
+    report.cloth_moved = report.cloth_moved || soft.moves();
+    report.cloth_substeps += advance_sheet(soft, scratch.sheets_in_motion[i], world.gravity, solids, dt).substeps;
+  }
+  report.cloth_wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void meet_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report) {
+  if (world.cell_cloths.empty()) return;
+  const auto start = std::chrono::steady_clock::now();
   scratch.dead.assign(world.liquid.particles.size(), 0);
   CellExchangeReport exchange;
   for (std::size_t i = 0; i < world.cell_cloths.size(); ++i) {
     CellCloth& cloth = world.cell_cloths[i];
     SoftSheetScratch& own = scratch.sheets_in_motion[i];
     if (report.liquid_moved) take_wall_impulse(cloth.soft, own, dt);
-    report.cloth_moved = report.cloth_moved || cloth.soft.moves();
-    report.cloth_substeps += advance_sheet(cloth.soft, own, world.gravity, solids, dt).substeps;
+    finish_sheet(cloth.soft, own, dt);
     if (!report.liquid_moved) continue;
     meet_particles(cloth, own, world.liquid, scratch.liquid.fields.position, scratch.dead, world.gravity, world.seed,
                    world.step, exchange);

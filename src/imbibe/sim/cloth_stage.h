@@ -15,8 +15,12 @@ Real longest_cloth_step(const World& world);
 // The soft sheets as walls of the liquid's next step, after those of solids and fixed textiles.
 void add_sheet_walls(const World& world, StepScratch& scratch);
 
-// Advances all soft sheets by dt. With `report.liquid_moved` the particles have just moved from scratch.liquid.fields'
-// positions to their own: those that crossed a sheet are absorbed or put back.
-void step_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report);
+// The cloths' own step of dt, before the liquid's.
+void advance_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report);
+
+// After the liquid's step of the same dt (none when nothing moves): what it gave the sheets, then its particles against
+// them. With `report.liquid_moved` the particles have just moved from scratch.liquid.fields' positions to their own: those
+// that crossed a sheet are absorbed or put back. Then the cells.
+void meet_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report);
 
 }  // namespace imbibe

@@ -280,8 +280,12 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     const Real interval = textile_interval(world, true);
     if (!world.textiles.empty()) max_step = std::min(max_step, std::max(interval - pace.since_wetting, 1e-6));
     max_step = std::min(max_step, longest_cloth_step(world));
+    if (!world.cell_cloths.empty()) {  // cloth and liquid make the same step
+      max_step = std::min(max_step, liquid_step_bound(world.liquid, world.liquid_params, world.gravity).step_s);
+      if (max_step > 0) advance_cloths(world, max_step, scratch, report);
+    }
     move_liquid(world, max_step, scratch, report);
-    step_cloths(world, report.step_s, scratch, report);
+    meet_cloths(world, report.step_s, scratch, report);
     bounce_off_yarns(world, scratch, report);
     pace.since_wetting += report.step_s;
     if (!world.textiles.empty() && pace.since_wetting >= interval * (1 - 1e-9))
@@ -293,7 +297,8 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     report.step_s = world.textiles.empty() ? allowed : std::min(allowed, textile_interval(world, false));
     report.step_bound = report.step_s < allowed ? "wetting" : allowed < longest ? "drop" : "until";
     if (longest_cloth_step(world) < report.step_s) report.step_s = longest_cloth_step(world), report.step_bound = "cloth";
-    step_cloths(world, report.step_s, scratch, report);
+    advance_cloths(world, report.step_s, scratch, report);
+    meet_cloths(world, report.step_s, scratch, report);
     if (!world.textiles.empty()) exchange_all(world, report.step_s, scratch, report);
     if (pace.resting) wake_when_changed(world);
   }
