@@ -84,7 +84,7 @@ CaseResult tube_in_time(CaseRunner& runner, bool upright) {
     r.checks.push_back(near(fmt::format("height after {:g} s", time), 1e3 * height_at(time, 0), 1e3 * reference(time), "mm",
                             0.01, "what the tube model promises (capillary.h)"));
   if (upright) {
-    // PHYSICS: published figures of the closed form itself.
+    // Published figures of the closed form itself.
     const std::pair<Real, Real> published[] = {{0.1, 18.254}, {1, 52.419}, {10, 119.398}};
     for (const auto& [time, h] : published)
       r.checks.push_back(near(fmt::format("closed form after {:g} s against its published value", time),
@@ -146,7 +146,7 @@ void add_capillaries(std::vector<Case>& cases) {
   const std::string family = "Capillary entry";
   cases.push_back({"jurin", family, "Capillary rise ends at Jurin's height",
                    "equilibrium height of water in an upright tube that stands on a free level",
-                   "h = 2 gamma cos(theta) / (rho g r)", "Jurin 1718; PHYSICS 3.8", "sharp meniscus, no evaporation",
+                   "h = 2 gamma cos(theta) / (rho g r)", "Jurin 1718", "sharp meniscus, no evaporation",
                    "wetting/capillary.h wetting/entry.h", jurin});
   cases.push_back({"washburn", family, "A level tube fills by Lucas and Washburn", "filled length against time without gravity",
                    "h^2 = gamma r cos(theta) t / (2 eta)", "Lucas 1918; Washburn, Phys. Rev. 17 (1921) 273",

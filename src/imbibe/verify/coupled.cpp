@@ -58,9 +58,9 @@ CaseResult particle_size(CaseRunner& runner) {
   const Uptake& finest = runs.back();
   for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
     const std::string name = fmt::format("{:g} against {:g} particles per radius: ", sizes[i], sizes.back());
-    r.checks.push_back(near(name + "water taken up at the end", runs[i].end, finest.end, "uL", 0.05, "issue's goal"));
-    r.checks.push_back(near(name + "time to half", runs[i].half, finest.half, "s", 0.15, "issue's goal"));
-    r.checks.push_back(near(name + "time to nine tenths", runs[i].nine_tenths, finest.nine_tenths, "s", 0.15, "issue's goal"));
+    r.checks.push_back(near(name + "water taken up at the end", runs[i].end, finest.end, "uL", 0.05, "project's goal"));
+    r.checks.push_back(near(name + "time to half", runs[i].half, finest.half, "s", 0.15, "project's goal"));
+    r.checks.push_back(near(name + "time to nine tenths", runs[i].nine_tenths, finest.nine_tenths, "s", 0.15, "project's goal"));
   }
   r.charts.push_back(chart);
   r.parameters = {{"drop", "10 uL of water set down on cotton shirting"}};
@@ -86,8 +86,8 @@ CaseResult stain(CaseRunner& runner) {
   measures.wet_saturation = 0.005;
   const Real area = measure(t, u.last.air, measures).wet_area, mean = held / wet_volume;
   const Real supplied = mass_balance(u.last).supplied / m.liquid.density;
-  r.checks.push_back(near("area of the stain", 1e6 * area, 1e6 * supplied / (capacity * mean), "mm2", 0.05, "issue's goal: V/(yarn water per area x mean saturation)"));
-  r.checks.push_back(at_most("share of the water that is left in pores", pores / (pores + yarn), 0.05, "1", "yarns drain them: 2 % in a trial with cotton"));
+  r.checks.push_back(near("area of the stain", 1e6 * area, 1e6 * supplied / (capacity * mean), "mm2", 0.05, "project's goal: V/(yarn water per area x mean saturation)"));
+  r.checks.push_back(at_most("share of the water that is left in pores", pores / (pores + yarn), 0.05, "1", "yarns drain them: 2 % were seen before with cotton"));
   r.checks.push_back(at_most("water that is still free", 1e9 * mass_balance(u.last).free / m.liquid.density, 0.05, "uL", "taken up"));
   runner.picture(r, u.last, runner.scene("drop_on_cloth"), "The stain at the end");
   r.parameters = {{"drop", "10 uL of water on cotton shirting"}, {"wet", "above 0.5 % saturation"}, {"mean saturation", fmt::format("{:.3f}", mean)}};

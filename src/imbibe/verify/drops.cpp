@@ -88,12 +88,12 @@ CaseResult static_drop(CaseRunner& runner) {
     const Real gamma = last.liquid.kind.surface_tension, eta = last.liquid.kind.viscosity, x = 2 / radius;
     sx += x, sy += mean.pressure, sxx += x * x, sxy += x * mean.pressure;
     curvature.push_back(1e-3 * x), computed.push_back(mean.pressure), theory.push_back(gamma * x);
-    r.checks.push_back(at_most(fmt::format("radius {:g} mm: capillary number of the residual motion", 1e3 * radius), eta * mean.speed / gamma, 1e-3, "1", "issue's goal"));
+    r.checks.push_back(at_most(fmt::format("radius {:g} mm: capillary number of the residual motion", 1e3 * radius), eta * mean.speed / gamma, 1e-3, "1", "project's goal"));
     r.checks.push_back(at_most(fmt::format("radius {:g} mm: the centre moved, of the radius", 1e3 * radius), mean.drift / radius, 5e-4, "1", "a free drop's centre is at rest"));
     r.checks.push_back(near(fmt::format("radius {:g} mm: radius by the second moment", 1e3 * radius), mean.size * 1e3, radius * 1e3, "mm", 0.00167, "volume within 0.5 %"));
   }
   const Real slope = (4 * sxy - sx * sy) / (4 * sxx - sx * sx), gamma = last.liquid.kind.surface_tension;
-  r.checks.push_back(near(fmt::format("surface tension from the slope of pressure over 2/R, {:g} particles per radius", coarse), 1e3 * slope, 1e3 * gamma, "mN/m", 0.03, "issue's goal"));
+  r.checks.push_back(near(fmt::format("surface tension from the slope of pressure over 2/R, {:g} particles per radius", coarse), 1e3 * slope, 1e3 * gamma, "mN/m", 0.03, "project's goal"));
   r.charts.push_back(chart_of("Laplace pressure of drops", "2/R", "1/mm", "pressure", "Pa", curvature, {{"solver", computed, ""}, {"gamma 2/R", theory, ""}}));
   std::vector<Convergence::Row> rows;
   for (const Real across : runner.form(std::vector<Real>{6, 8}, std::vector<Real>{8, 11, 14})) {
@@ -152,14 +152,14 @@ CaseResult rayleigh(CaseRunner& runner) {
     last = oscillate(runner, across, runner.form(0.013, 0.018), {});
     rows.push_back({1 / across, last.period() / theory - 1});
   }
-  r.checks.push_back(near("period of the second mode", 1e3 * last.period(), 1e3 * theory, "ms", 0.03, "issue's goal; an amplitude of 8 % adds 0.3 %"));
+  r.checks.push_back(near("period of the second mode", 1e3 * last.period(), 1e3 * theory, "ms", 0.03, "project's goal; an amplitude of 8 % adds 0.3 %"));
   if (rows.size() > 1) r.convergence.push_back(convergence_of("period (relative)", "spacing over radius", rows));
   // Lamb: e-folding time R^2/((n - 1)(2n + 1) nu) = R^2/(5 nu).
   const Real nu = water.viscosity / water.density;
   const Real spacing = 1e-3 * rows.back().step, added = 0.1 * std::sqrt(water.surface_tension * spacing / water.density);
-  r.checks.push_back(near("water: e-folding time of the amplitude (Lamb)", 1e3 * last.decay(), 1e3 * 1e-6 / (5 * nu), "ms", 0.15, "issue's goal"));
+  r.checks.push_back(near("water: e-folding time of the amplitude (Lamb)", 1e3 * last.decay(), 1e3 * 1e-6 / (5 * nu), "ms", 0.15, "project's goal"));
   const Oscillation thick = oscillate(runner, runner.form(7.0, 11.0), 0.013, {"liquid.kind={name: oil, density: 1000 kg/m3, viscosity: 20 mPa s, surface_tension: 72.75 mN/m}"});
-  r.checks.push_back(near("20 mPa s: e-folding time of the amplitude (Lamb)", 1e3 * thick.decay(), 1e3 * 1e-6 / (5 * 2e-5), "ms", 0.15, "issue's goal; Oh = 0.074, Lamb's law is for small ones"));
+  r.checks.push_back(near("20 mPa s: e-folding time of the amplitude (Lamb)", 1e3 * thick.decay(), 1e3 * 1e-6 / (5 * 2e-5), "ms", 0.15, "project's goal; Oh = 0.074, Lamb's law is for small ones"));
   r.notes.push_back(fmt::format("The solver adds a viscosity of {:.3g} mm2/s (surface.numerical_viscosity) at the finest spacing, {:.1f} times water's, and filters motions "
                                 "of the size of the spacing: small motions of thin liquids are damped faster than Lamb's law says; with the added "
                                 "viscosity alone his time would be {:.1f} ms. It fades as the root of the spacing.",
@@ -214,14 +214,14 @@ CaseResult sessile(CaseRunner& runner, bool gravity) {
       const Real gamma = w.liquid.kind.surface_tension;
       const SessileShape theory = sessile_shape(volume, radians(angle), gravity ? w.liquid.kind.density * 9.81 / gamma : 0);
       const std::string name = fmt::format("{:g} deg from {}: ", angle, tall ? "tall" : "flat");
-      r.checks.push_back(within(name + "angle, fitted profile", d.fit, angle, "deg", 5, "issue's goal"));
-      r.checks.push_back(within(name + "angle, slope at the wall", d.slope, angle, "deg", 5, "issue's goal"));
-      r.checks.push_back(near(name + "base radius", 1e3 * d.base, 1e3 * theory.base_radius, "mm", 0.05, "issue's goal"));
-      r.checks.push_back(near(name + "height", 1e3 * d.height, 1e3 * theory.height, "mm", 0.05, "issue's goal"));
-      r.checks.push_back(near(name + "volume", 1e9 * d.volume, 1e9 * volume, "uL", 0.005, "issue's goal"));
+      r.checks.push_back(within(name + "angle, fitted profile", d.fit, angle, "deg", 5, "project's goal"));
+      r.checks.push_back(within(name + "angle, slope at the wall", d.slope, angle, "deg", 5, "project's goal"));
+      r.checks.push_back(near(name + "base radius", 1e3 * d.base, 1e3 * theory.base_radius, "mm", 0.05, "project's goal"));
+      r.checks.push_back(near(name + "height", 1e3 * d.height, 1e3 * theory.height, "mm", 0.05, "project's goal"));
+      r.checks.push_back(near(name + "volume", 1e9 * d.volume, 1e9 * volume, "uL", 0.005, "project's goal"));
       r.checks.push_back(near(name + "net vertical surface force", 1e6 * d.force, -1e6 * 2 * pi * (d.base - 0.5 * w.liquid.spacing()) * gamma * std::sin(radians(d.fit)), "uN", 0.05,
                               "-2 pi a gamma sin(theta) of the shape shown; a to the centres of the outermost particles"));
-      r.checks.push_back(at_most(name + "capillary number of the residual motion", w.liquid.kind.viscosity * d.speed / gamma, 1e-3, "1", "issue's goal"));
+      r.checks.push_back(at_most(name + "capillary number of the residual motion", w.liquid.kind.viscosity * d.speed / gamma, 1e-3, "1", "project's goal"));
       shown.push_back(d.fit), wanted.push_back(angle);
       if (angle == 120 && !tall) runner.picture(r, w, runner.scene("sessile"), "The drop of 120 degrees");
     }
@@ -334,7 +334,7 @@ CaseResult slot(CaseRunner& runner) {
     time.push_back(1e3 * now.time), difference.push_back(1e3 * rise), theory.push_back(1e3 * wanted);
     if (now.time > 0.6 * scene.duration) mean += rise, count += 1;
   });
-  r.checks.push_back(near("difference of the levels between and beside the plates", 1e3 * mean / count, 1e3 * wanted, "mm", 0.05, "issue's goal"));
+  r.checks.push_back(near("difference of the levels between and beside the plates", 1e3 * mean / count, 1e3 * wanted, "mm", 0.05, "project's goal"));
   r.charts.push_back(chart_of("Level between the plates over that beside them", "time", "ms", "height", "mm", time, {{"solver", difference, ""}, {"closed form", theory, ""}}));
   runner.picture(r, w, scene, "Water between two plates");
   r.parameters = {{"plates", "1 mm apart, 60 degrees, 8 particles across"}, {"gravity", "40 m/s2"}};

@@ -62,7 +62,7 @@ CaseResult hydrostatic(CaseRunner& runner) {
   r.checks.push_back(near("pressure at the bottom", line.at(0), density * g * depth, "Pa", 0.02,
                           "the surface lies within a quarter of a spacing of where the volume puts it: 1 %"));
   r.convergence.push_back(convergence_of("pressure at the bottom (relative)", "spacing of particles [mm]", rows));
-  r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "issue's goal"));
+  r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "project's goal"));
   r.charts.push_back(chart_of("Pressure in the column", "height", "mm", "pressure", "Pa", height, {{"solver", pressure, ""}, {"rho g (H - z)", theory, ""}}));
   runner.picture(r, last, runner.scene("column"), "The column at rest");
   r.parameters = {{"liquid", "1000 kg/m3, 100 mPa s"}, {"column", "4 x 4 x 12 mm"}};
@@ -102,7 +102,7 @@ CaseResult vortex(CaseRunner& runner, bool pressed) {
   }
   r.checks.push_back(at_most("speed after t = 1 at the finest resolution, relative error", worst_speed, 0.05, "1", "goal: 5 %"));
   r.convergence.push_back(convergence_of("speed after t = 1 (relative)", "spacing of particles [mm]", rows));
-  if (!pressed) r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "issue's goal"));
+  if (!pressed) r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "project's goal"));
   if (pressed)
     r.notes.push_back("Under pressure the vortex slows down as if by dry friction, by about the same amount per time whatever its speed: particles "
                       "pressed together settle into layers, and shearing them past each other costs work that is returned as noise and damped. "
@@ -169,7 +169,7 @@ CaseResult channel(CaseRunner& runner, bool belt) {
     r.checks.push_back(at_most(fmt::format("deviation of the profile at t = {:.1f} h2/nu, of the greatest speed", time), deviation, 0.02, "1", "goal: 2 % (root mean square)"));
   if (rows.size() > 1) {
     r.convergence.push_back(convergence_of("steady profile (root mean square, of the greatest speed)", "spacing of particles [mm]", rows));
-    r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "issue's goal"));
+    r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "project's goal"));
   }
   if (!belt)
     r.notes.push_back("The block is born on a cubic lattice, which this slow flow does not mix. There a sum over pairs along their lines of centres has "

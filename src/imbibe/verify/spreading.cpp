@@ -96,8 +96,8 @@ CaseResult barenblatt(CaseRunner& runner) {
       if (std::abs(now.time - 20000) < 1) late = area.back();
     });
     const std::string name = fmt::format("lambda = {:g}: ", lambda);
-    r.checks.push_back(within(name + "exponent of the area, 2000 to 20000 s", std::log10(late / early), 1 / (body.power + 1), "", 0.02, "issue's goal"));
-    r.checks.push_back(near(name + "area at 20000 s", late, theory.back(), "mm2", 0.05, "issue's goal; no free number"));
+    r.checks.push_back(within(name + "exponent of the area, 2000 to 20000 s", std::log10(late / early), 1 / (body.power + 1), "", 0.02, "project's goal"));
+    r.checks.push_back(near(name + "area at 20000 s", late, theory.back(), "mm2", 0.05, "project's goal; no free number"));
     r.checks.push_back(near(name + "water", spread_of(w).kg * 1e6, first_kg * 1e6, "mg", 1e-12, "conservation"));
     Real rim = 0;
     const Textile& t = w.textiles[0];
@@ -151,9 +151,9 @@ CaseResult isotropy(CaseRunner& runner) {
     }
     return diagonal / axis;
   };
-  r.checks.push_back(within("reach along the diagonal over that along the yarns, factor 10", shape(10), 1, "1", 0.05, "PHYSICS: at most 5 % at a stain of 12 pitches and more"));
+  r.checks.push_back(within("reach along the diagonal over that along the yarns, factor 10", shape(10), 1, "1", 0.05, "at most 5 % at a stain of 12 pitches and more"));
   const Real usual = shape(3);
-  r.checks.push_back(within("the same with the default factor 3", usual, 1, "1", 0.06, "2 to 4 % in a trial at this pitch"));
+  r.checks.push_back(within("the same with the default factor 3", usual, 1, "1", 0.06, "2 to 4 % were seen before at this pitch"));
   r.checks.push_back(at_most("the same without crossings: a cross", shape(0), 0.85, "1", "liquid stays in the yarns it is in"));
   r.parameters = {{"cloth", "cotton 30 x 30 /cm, threshold 0.004"}};
   return r;

@@ -271,7 +271,7 @@ void add_yarn_transport(std::vector<Case>& cases) {
   cases.push_back({"kunzel", family, "Kuenzel's absorption law",
                    "water taken up and front of half saturation, model kunzel",
                    "M = 1.0085 A_w sqrt(t), x(s = 1/2) = 1.141 (A_w/w_f) sqrt(t)",
-                   "Kuenzel 1995, eq. 24, solved for a semi-infinite body; PHYSICS 3.13", "no gravity",
+                   "Kuenzel 1995, eq. 24, solved for a semi-infinite body", "no gravity",
                    "wetting/along_yarn.h", kunzel});
   cases.push_back({"fick-step", family, "A step of saturation spreads by the error function",
                    "profile of a small step in a long yarn", "s = erfc(x/(2 sqrt(D t)))/2",
