@@ -14,6 +14,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/output_file.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/quantity.h"
 #include "imbibe/io/background_writer.h"
 #include "imbibe/io/machine.h"
 #include "imbibe/io/progress.h"
@@ -43,7 +44,7 @@ struct RunArguments {
   std::string output;
   std::string changes;
   std::vector<std::string> overrides;
-  double until = -1;
+  std::string until;  // a time, with a unit or in s
   int threads = 0;
   bool resume = false, overwrite = false, no_pictures = false;
   std::string progress = "auto";
@@ -60,6 +61,17 @@ fs::path free_run_folder(const fs::path& scene) {
     const fs::path folder = fs::path("runs") / (i == 1 ? stem : fmt::format("{}_{}", stem, i));
     if (!fs::exists(folder)) return folder;
   }
+}
+
+Real until_of(const std::string& text) {
+  Real until = 0;
+  try {
+    until = parse_quantity(text, "s");
+  } catch (const QuantityError& e) {
+    throw InputError(fmt::format("--until: {}", e.what()));
+  }
+  if (!(until > 0)) throw InputError(fmt::format("--until: {} is not a time after the start", text));
+  return until;
 }
 
 ProgressStyle progress_style(const std::string& wanted) {
@@ -91,7 +103,7 @@ class RunSession {
       throw InputError(fmt::format("{} holds no scene.yaml: nothing of a run is there yet to resume; start it with run "
                                    "SCENE -o {}", folder_path_.string(), folder_path_.string()));
     scene_ = read_scene(scene_file_, arguments.overrides);
-    if (arguments.until > 0) scene_.duration = arguments.until;
+    if (!arguments.until.empty()) scene_.duration = until_of(arguments.until);
     if (!arguments.output.empty()) folder_path_ = arguments.output;
     if (folder_path_.empty()) folder_path_ = free_run_folder(scene_file_);
     if (!arguments.changes.empty()) changes_.emplace(read_changes(arguments.changes));
@@ -382,8 +394,8 @@ void add_run_command(CLI::App& app, CommandContext& context) {
       ->add_option("--changes", arguments->changes,
                    "changes.jsonl of a live run: makes the same changes at the same steps, and ends where it ended")
       ->excludes(resume);
-  command->add_option("--until", arguments->until, "simulated seconds, in place of the scene's duration")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--until", arguments->until,
+                      "simulated time (\"90 s\", \"2 min\"; bare: seconds), in place of the scene's duration");
   command->add_option("--threads", arguments->threads, "0 = all cores; results do not depend on it")
       ->check(CLI::Range(0, 1024));
   command->add_flag("--overwrite", arguments->overwrite, "replace an earlier run in the folder given with -o");

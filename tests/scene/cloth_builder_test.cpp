@@ -1,6 +1,9 @@
 // Soft sheets, cells and pipes in scenes: what a good one becomes, and what is said of a bad one.
 #include "imbibe/scene/cloth_builder.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include "imbibe/scene/builder.h"
 #include "scene/scene_test_support.h"
 
@@ -139,8 +142,14 @@ std::string mesh_scene(const std::filesystem::path& file) {
          file.string() + "', uv_scale: 0.1}}\n    wetting: cells\n";
 }
 
+// A file of each test's own: tests run side by side.
+std::filesystem::path mesh_file() {
+  const char* test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  return std::filesystem::path(::testing::TempDir()) / fmt::format("imbibe_cloth_{}_{}.obj", test, ::getpid());
+}
+
 std::string problems_of_mesh(const std::string& obj) {
-  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "imbibe_cloth_builder_test.obj";
+  const std::filesystem::path file = mesh_file();
   std::ofstream(file) << obj;
   return problems(mesh_scene(file));
 }
@@ -150,7 +159,7 @@ const char* const square =
 
 TEST(ClothScene, AMeshWithUvBecomesASheet) {
   EXPECT_EQ(problems_of_mesh(square), "none");
-  const World world = built(mesh_scene(std::filesystem::path(::testing::TempDir()) / "imbibe_cloth_builder_test.obj"));
+  const World world = built(mesh_scene(mesh_file()));
   EXPECT_NEAR(total_mass(world.cell_cloths[0].soft.sheet), 0.15 * 0.01, 1e-12);
   Real area = 0;
   for (const Real a : world.cell_cloths[0].grid->area) area += a;

@@ -212,7 +212,7 @@ test('two viewers watch, one holds the controls and may hand them over', async (
 });
 
 test('two swatches are compared: same drops, neither runs ahead', async () => {
-  await page.evaluate(() => window.imbibe.send({ type: 'compare', on: true, assign: ['textiles[0].contact_angle=60 deg'] }));
+  await page.evaluate(() => window.imbibe.send({ type: 'compare', on: true, assign: ['textiles[0].contact_angle=80 deg'] }));
   await until(page, () => window.imbibe.swatches.length === 2 && window.imbibe.swatches[1].frames > 0);
   await reaches(page, 'time_s', 0.01, 0);
   await reaches(page, 'time_s', 0.01, 1);

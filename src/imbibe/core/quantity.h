@@ -21,10 +21,10 @@ struct QuantityError : std::runtime_error {
 // Throws QuantityError saying what was read and what kind of unit is wanted.
 Real parse_quantity(std::string_view text, std::string_view si_unit);
 
-// `value` in `unit`, e.g. format_quantity(4e-4, "m", "mm") = "0.4 mm". At most 6 significant digits.
-std::string format_quantity(Real si_value, std::string_view si_unit, std::string_view shown_unit);
+// `in_si` in `shown_unit`, e.g. format_quantity(4e-4, "m", "mm") = "0.4 mm". At most 6 significant digits.
+std::string format_quantity(Real in_si, std::string_view si_unit, std::string_view shown_unit);
 
 // The factor and offset of a conversion: shown = factor * si + offset.
-Real convert_from_si(Real si_value, std::string_view si_unit, std::string_view shown_unit);
+Real convert_from_si(Real in_si, std::string_view si_unit, std::string_view shown_unit);
 
 }  // namespace imbibe

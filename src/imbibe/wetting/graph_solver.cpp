@@ -72,7 +72,7 @@ void factorise_block(BlockFactors& f, std::size_t begin, std::size_t end) {
     for (Index k = first; k < last; ++k) place[f.column[k]] = k;
     for (Index k = first; k < upper; ++k) {
       const std::size_t j = begin + f.column[k];
-      const float lower = f.value[k] *= f.inverse_diagonal[j];
+      const Real lower = f.value[k] *= f.inverse_diagonal[j];
       for (Index n = f.first[j] + f.upper[j]; n < f.first[j] + f.last[j]; ++n) {
         const std::size_t c = f.column[n];
         if (begin + c == i) {
@@ -91,11 +91,11 @@ void factorise(const GraphMatrix& m, BlockFactors& f) {
   if (m.pattern == 0 || f.pattern != m.pattern) find_places(m, f);
   parallel_tiles(m.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      f.inverse_diagonal[i] = static_cast<float>(m.diagonal[i]);
+      f.inverse_diagonal[i] = m.diagonal[i];
       const Index first = f.first[i];
       for (Index k = first; k < first + f.last[i]; ++k) f.value[k] = 0;
       for (Index k = m.row_start[i]; k < m.row_start[i + 1]; ++k) {
-        if (f.place[k] != BlockFactors::dropped) f.value[first + f.place[k]] += static_cast<float>(m.value[k]);
+        if (f.place[k] != BlockFactors::dropped) f.value[first + f.place[k]] += m.value[k];
       }
     }
     factorise_block(f, begin, end);
@@ -109,14 +109,14 @@ void apply_factors(const BlockFactors& f, std::span<const Real> b, std::span<Rea
     for (std::size_t i = begin; i < end; ++i) {
       Real sum = b[i];
       const Index first = f.first[i], upper = first + f.upper[i];
-      for (Index k = first; k < upper; ++k) sum -= static_cast<Real>(f.value[k]) * own[f.column[k]];
+      for (Index k = first; k < upper; ++k) sum -= f.value[k] * own[f.column[k]];
       x[i] = sum;
     }
     for (std::size_t i = end; i-- > begin;) {
       Real sum = x[i];
       const Index upper = f.first[i] + f.upper[i], last = f.first[i] + f.last[i];
-      for (Index k = upper; k < last; ++k) sum -= static_cast<Real>(f.value[k]) * own[f.column[k]];
-      x[i] = sum * static_cast<Real>(f.inverse_diagonal[i]);
+      for (Index k = upper; k < last; ++k) sum -= f.value[k] * own[f.column[k]];
+      x[i] = sum * f.inverse_diagonal[i];
     }
   }, factor_block);
 }

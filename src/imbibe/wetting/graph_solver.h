@@ -42,13 +42,13 @@ struct LinearSolve {
 
 // ILU(0) of the blocks on the diagonal. Row i of the factors begins where the matrix's row begins; its entries below the
 // diagonal are [first, first + upper), those above [first + upper, first + last), columns ascending and counted from the
-// block's first row. `place` leads from an entry of the matrix to its own in the row (dropped: none). Single precision: a
-// preconditioner only has to be near, and the solver waits for memory, not for arithmetic.
+// block's first row. `place` leads from an entry of the matrix to its own in the row (dropped: none). Double precision: in
+// long steps a row sums to almost nothing against its entries, and factors in single precision lose just that.
 struct BlockFactors {
   static constexpr std::uint16_t dropped = 0xffff;
   std::vector<Index> first;
   std::vector<std::uint16_t> upper, last, column, place;
-  std::vector<float> value, inverse_diagonal;
+  std::vector<Real> value, inverse_diagonal;
   std::uint64_t pattern = 0;
 };
 

@@ -17,6 +17,8 @@
 namespace imbibe {
 namespace {
 
+// 90 deg in radians has a cosine of 6e-17: what is left by rounding is no suction, and a network driven by it never ends.
+constexpr Real neutral_cosine = 1e-9;
 constexpr Real least_kunzel_entry = 100;           // Pa, where a yarn known only by A_w has no suction of its own
 constexpr Real water_self_diffusion = 2.3e-9;      // m2/s, D* of eq. 10
 constexpr Real scanning_power = 4;                 // from the filling to the draining branch: P_c ~ s^-4
@@ -55,7 +57,7 @@ YarnWetting yarn_wetting(const YarnType& type, const WettingParams& p, const Wet
   };
   yarn.entry = entry(advancing_angle(fibre, liquid));
   yarn.entry_receding = std::max(yarn.entry, entry(receding_angle(fibre, liquid)));
-  yarn.wets = yarn.entry > 0;
+  yarn.wets = portable::cos(std::min(pi, advancing_angle(fibre, liquid) + p.pore_divergence)) > neutral_cosine;
   if (p.model == TransportModel::kunzel) {
     yarn.wets = coefficient > 0;
     yarn.entry = std::max(yarn.entry, least_kunzel_entry);
@@ -191,7 +193,7 @@ void add_pores(WettingModel& m, const YarnNetwork& network, const PoreSurroundin
                               .radius_x = around.warp_radius[i], .radius_y = around.weft_radius[i]};
     const Real throat = network.pore_throat[i];
     m.pore_throat.push_back(throat);
-    m.pore_wets.push_back(cosine > 1e-9);
+    m.pore_wets.push_back(cosine > neutral_cosine);
     const Real entry = std::max<Real>(0, throat_suction(tension, cosine, throat));
     m.pore_entry.push_back(entry);
     m.pore_entry_receding.push_back(std::max(entry, throat_suction(tension, around.cosine_receding[i], throat)));
