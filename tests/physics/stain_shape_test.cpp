@@ -26,6 +26,7 @@ Extents extents(const World& world) {
   const std::vector<Real> saturation = node_saturations(textile, world.air);
   std::vector<Real> along_weft, along_warp;
   for (std::size_t s = 0; s < textile.fabric->network.segments(); ++s) {
+    if (!textile.model->yarns[textile.model->segment_type[s]].wets) continue;  // sorbs vapour, carries nothing
     if (saturation[s] <= MeasureParams{}.wet_saturation) continue;
     along_weft.push_back(textile.fabric->network.node_centre(s).x);
     along_warp.push_back(textile.fabric->network.node_centre(s).y);
