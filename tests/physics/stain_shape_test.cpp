@@ -43,9 +43,9 @@ World started(const std::string& name, Real coarser) {
 
 TEST(StainShape, OfCottonWarpAndPolypropyleneWeftGrowsAlongTheWarp) {
   World world = started("hydrophobic_weft", 2);
-  test::run_until(world, 0.6);  // the footprint is wetted: its pores and the warp under it
+  test::run_until(world, 1.2);  // the drop has spread: its footprint is wetted, the pores and the warp under it
   const Extents early = extents(world);
-  test::run_until(world, 2.5);
+  test::run_until(world, 3);
   const Extents late = extents(world);
   EXPECT_GT(late.warp - early.warp, 4e-3);
   // A step of the extent is one pitch, 0.33 mm; a quarter of the growth along the warp is at least 1 mm.

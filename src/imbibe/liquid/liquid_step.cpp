@@ -147,6 +147,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   report.wall_pressure_impulse.assign(walls.size(), {});
   LiquidStepBound bound{max_step, "given"};
   if (liquid.particles.size() > 0) bound = liquid_step_bound(liquid, params, gravity);
+  const bool sliver = max_step < 0.5 * bound.step_s;
   if (max_step < bound.step_s) bound = {max_step, "given"};
   report.step_s = bound.step_s;
   report.bound = bound.bound;
@@ -190,14 +191,19 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   kick(f, gravity, dt);
   const Real relaxation = dt / (params.pressure.density_time * shortest_time(liquid, params, gravity));
   const bool shifts = params.position_correction > 0;
+  // A step cut far below the usual one has pressures of impulse / dt, a start for the next step that its solver does not
+  // come back from: such a step starts warm, but leaves the starts of the others as they were.
+  std::vector<float>& warm_shift =
+      sliver ? scratch.sliver_warm_shift = particles.warm_divergence : particles.warm_divergence;
+  std::vector<float>& warm_pressure = sliver ? scratch.sliver_warm = particles.warm_pressure : particles.warm_pressure;
   if (shifts) {
-    const PressureReport shift = find_shift(f, params, dt, particles.warm_divergence);
+    const PressureReport shift = find_shift(f, params, dt, warm_shift);
     report.divergence_iterations = shift.iterations;
     report.remaining_density_error = shift.residual;
   }
   SheetContacts* const sheets = take_sheets(f, walls, liquid.particle_mass, scratch);
   const PressureReport pressure =
-      project_velocity(f, params.pressure, dt, shifts ? 0 : std::min(1.0, relaxation), particles.warm_pressure, sheets);
+      project_velocity(f, params.pressure, dt, shifts ? 0 : std::min(1.0, relaxation), warm_pressure, sheets);
   add_wall_impulse(f.boundary, f.wall_push, liquid.particle_mass * dt, report.wall_pressure_impulse);
   if (sheets != nullptr) give_feet_impulses(f.boundary, walls);
   report.pressure_iterations = pressure.iterations;

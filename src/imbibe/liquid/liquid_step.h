@@ -93,6 +93,7 @@ struct LiquidScratch {
   SurfaceScratch surface;
   SheetContacts sheets;
   std::vector<SheetWall*> sheet_walls;  // per wall; null for the others
+  std::vector<float> sliver_warm, sliver_warm_shift;  // warm starts of a step that is cut short
 };
 
 struct LiquidStepBound {
