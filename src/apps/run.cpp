@@ -20,6 +20,7 @@
 #include "imbibe/io/progress.h"
 #include "imbibe/io/report.h"
 #include "imbibe/io/run_folder.h"
+#include "imbibe/live/recorder.h"
 #include "imbibe/scene/builder.h"
 #include "imbibe/scene/library.h"
 #include "imbibe/scene/live_change.h"
@@ -52,15 +53,6 @@ struct RunArguments {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// runs/<scene>, or the next free runs/<scene>_2, ...: a rerun never touches an earlier result.
-fs::path free_run_folder(const fs::path& scene) {
-  const std::string stem = scene.stem().string();
-  for (int i = 1;; ++i) {
-    const fs::path folder = fs::path("runs") / (i == 1 ? stem : fmt::format("{}_{}", stem, i));
-    if (!fs::exists(folder)) return folder;
-  }
 }
 
 Real until_of(const std::string& text) {
@@ -105,7 +97,7 @@ class RunSession {
     scene_ = read_scene(scene_file_, arguments.overrides);
     if (!arguments.until.empty()) scene_.duration = until_of(arguments.until);
     if (!arguments.output.empty()) folder_path_ = arguments.output;
-    if (folder_path_.empty()) folder_path_ = free_run_folder(scene_file_);
+    if (folder_path_.empty()) folder_path_ = live::free_folder(fs::path("runs") / scene_file_.stem());  // never over an earlier result
     if (!arguments.changes.empty()) changes_.emplace(read_changes(arguments.changes));
     library_ = read_library(library_folders(scene_file_, context.data_folders));
     world_ = build_world(scene_, library_);
@@ -116,22 +108,7 @@ class RunSession {
       if (with_pictures) stage = first_stage();
       resume();
     }
-    RunSetup setup;
-    setup.command = context.command_line;
-    setup.title = scene_.title;
-    setup.scene_yaml = write_scene(scene_);
-    setup.seed = world_.seed;
-    setup.threads = available_threads();
-    setup.until_s = scene_.duration;
-    setup.every_s = output_interval(scene_);
-    for (const Textile& textile : world_.textiles)
-      setup.fabrics.emplace_back(textile.name,
-                                 describe_fabric(*textile.fabric, {world_.liquid.kind.name, world_.liquid.kind.density,
-                                                                   world_.liquid.kind.surface_tension}));
-    setup.measures = scene_.measures;
-    setup.particle_files = scene_.output.particles;
-    setup.textile_files = scene_.output.textiles;
-    folder_ = std::make_unique<RunFolder>(folder_path_, std::move(setup),
+    folder_ = std::make_unique<RunFolder>(folder_path_, live::run_setup(scene_, world_, context.command_line),
                                           arguments.resume      ? ExistingFolder::resume
                                           : arguments.overwrite ? ExistingFolder::overwrite
                                                                 : ExistingFolder::refuse,

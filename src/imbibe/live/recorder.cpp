@@ -16,20 +16,28 @@ fs::path free_folder(const fs::path& wanted) {
   }
 }
 
-Recorder::Recorder(const RecorderOptions& options, const Scene& scene, const World& world) {
+RunSetup run_setup(const Scene& scene, const World& world, const std::string& command) {
   RunSetup setup;
-  setup.command = options.command;
+  setup.command = command;
   setup.title = scene.title;
   setup.scene_yaml = write_scene(scene);
   setup.seed = world.seed;
   setup.threads = available_threads();
   setup.until_s = scene.duration;
   setup.every_s = output_interval(scene);
+  const LiquidKind& kind = world.liquid.kind;
+  for (const Textile& textile : world.textiles)
+    setup.fabrics.emplace_back(textile.name,
+                               describe_fabric(*textile.fabric, {kind.name, kind.density, kind.surface_tension}));
   setup.measures = scene.measures;
   setup.particle_files = scene.output.particles;
   setup.textile_files = scene.output.textiles;
+  return setup;
+}
+
+Recorder::Recorder(const RecorderOptions& options, const Scene& scene, const World& world) {
   const fs::path folder = options.exactly ? options.folder : free_folder(options.folder);
-  run_ = std::make_unique<RunFolder>(folder, std::move(setup),
+  run_ = std::make_unique<RunFolder>(folder, run_setup(scene, world, options.command),
                                      options.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse, world);
   record(options.files);
   log_ = AppendFile(folder / changes_file);

@@ -14,6 +14,9 @@
 
 namespace imbibe::live {
 
+// What a run folder says of the run of `scene`, whose world was built from it: the same for `run` and `live`.
+RunSetup run_setup(const Scene& scene, const World& world, const std::string& command);
+
 struct RecorderOptions {
   std::filesystem::path folder;  // wanted; numbered when it is taken
   bool exactly = false;          // the user named it: never another
