@@ -97,7 +97,8 @@ class RunSession {
     scene_ = read_scene(scene_file_, arguments.overrides);
     if (!arguments.until.empty()) scene_.duration = until_of(arguments.until);
     if (!arguments.output.empty()) folder_path_ = arguments.output;
-    if (folder_path_.empty()) folder_path_ = live::free_folder(fs::path("runs") / scene_file_.stem());  // never over an earlier result
+    // A rerun never touches an earlier result.
+    if (folder_path_.empty()) folder_path_ = live::free_folder(fs::path("runs") / scene_file_.stem());
     if (!arguments.changes.empty()) changes_.emplace(read_changes(arguments.changes));
     library_ = read_library(library_folders(scene_file_, context.data_folders));
     world_ = build_world(scene_, library_);
