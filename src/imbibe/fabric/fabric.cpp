@@ -18,13 +18,6 @@ constexpr double most_nodes = static_cast<double>(no_index);  // node and point 
 
 std::string joined(const std::string& key, const std::string& name) { return key.empty() ? name : key + "." + name; }
 
-bool is_wif_name(const std::string& text) {
-  if (text.size() < 4) return false;
-  std::string tail = text.substr(text.size() - 4);
-  for (char& c : tail) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return tail == ".wif";
-}
-
 // One family before it is laid out: how its pitch and its yarns go from thread to thread.
 struct FamilyPlan {
   Real uniform_pitch = 0;              // m; 0: spacing holds

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -207,6 +208,13 @@ WeaveDraft draw_down(const WifFile& wif, const std::vector<Row>& threading, cons
 }  // namespace
 
 Real linear_from_srgb(Real c) { return c <= 0.04045 ? c / 12.92 : portable::pow((c + 0.055) / 1.055, 2.4); }
+
+bool is_wif_name(std::string_view name) {
+  constexpr std::string_view end = ".wif";
+  if (name.size() < end.size()) return false;
+  return std::equal(end.begin(), end.end(), name.end() - end.size(),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
 
 WifFile parse_wif(std::string_view text, const std::string& file) {
   Reader r(text, file);

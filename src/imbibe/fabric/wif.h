@@ -45,6 +45,9 @@ struct WifFile {
 inline constexpr int largest_wif_shafts = 4096;
 inline constexpr std::size_t largest_wif_bytes = 64u << 20;
 
+// Whether a file name ends in .wif, in any case.
+bool is_wif_name(std::string_view name);
+
 // Throws InputError with every problem of the text; `file` is the name put before the line numbers.
 WifFile parse_wif(std::string_view text, const std::string& file);
 WifFile read_wif(const std::filesystem::path& file);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -15,24 +14,6 @@
 namespace imbibe::live {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-bool ends_with_word(std::string name, const std::string& end) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name.ends_with(end);
-}
-
-std::set<std::string> files_of(const Scene& scene) {
-  std::set<std::string> files;
-  for (const TextileSpec& textile : scene.textiles)
-    if (ends_with_word(textile.fabric.weave, ".wif")) files.insert(textile.fabric.weave);
-  for (const SolidSpec& solid : scene.solids)
-    if (solid.shape.file) files.insert(*solid.shape.file);
-  return files;
-}
-
-}  // namespace
 
 Gallery find_gallery(const std::vector<std::string>& data_folders, const fs::path& drafts) {
   Gallery gallery;
@@ -71,14 +52,14 @@ Scene open_gallery_scene(const Gallery& gallery, const std::string& id) {
 }
 
 void refuse_new_files(const Scene& scene, const Scene& before) {
-  const std::set<std::string> known = files_of(before);
-  for (const std::string& file : files_of(scene))
+  const std::set<std::string> known = files_named_by(before);
+  for (const std::string& file : files_named_by(scene))
     if (!known.contains(file))
       throw InputError("a scene of the page may not name files (" + file + "); start it with `imbibe live FILE`");
 }
 
 Scene read_handed_in(const Gallery& gallery, const std::string& name, const std::string& text, const Scene& base) {
-  if (!ends_with_word(name, ".wif")) {
+  if (!is_wif_name(name)) {
     Scene scene = read_scene_text(text, name.empty() ? "scene" : name);
     refuse_new_files(scene, {});
     return scene;

@@ -1,7 +1,7 @@
 // The scenes a page may choose from, and what a page may hand in: names are looked up in a list made at the start, texts
 // are read as scenes or drafts that name no file. Nothing of a client reaches the file system, but for a draft's text
 // that is written under a name of our own making.
-// Tested with the page, in viewer/test/live.test.mjs.
+// Tested in tests/live/gallery_test.cpp and with the page, in viewer/test/live.test.mjs.
 #pragma once
 
 #include <filesystem>

@@ -44,6 +44,7 @@ bool Session::handle(const Command& command) {
   } else if (const auto* opened = std::get_if<OpenMessage>(&body)) {
     open(viewer, *opened);
   } else if (const auto* record = std::get_if<RecordMessage>(&body)) {
+    if (!recorder_) return outlet.tell(viewer, error_event(setup_.swatch, "record", "there is no run folder: reset first")), false;
     recorder_->record(record->on);
     told_ = false;
     outlet.tell(all_viewers, notice_event(setup_.swatch, record->on ? "recording to " + recorder_->folder().string()
@@ -68,6 +69,7 @@ std::string Session::change_event(std::uint64_t viewer, const std::vector<std::s
 bool Session::change(std::uint64_t viewer, const std::vector<std::string>& assignments) {
   if (failed_) return outlet.tell(viewer, error_event(setup_.swatch, "set", "the simulation has failed: reset it first")), false;
   try {
+    refuse_new_files(read_scene_text(write_scene(scene_), "the scene", assignments), scene_);
     apply_change(scene_, world_, *setup_.library, assignments);
   } catch (const InputError& error) {
     outlet.tell(viewer, error_event(setup_.swatch, "set", error.problems()));
@@ -113,6 +115,8 @@ void Session::restart(std::uint64_t viewer, Scene scene) {
     stop_ = true;
   } catch (const InputError& error) {
     outlet.tell(viewer, error_event(setup_.swatch, "restart", error.problems()));
+  } catch (const std::exception& error) {
+    outlet.tell(viewer, error_event(setup_.swatch, "restart", error.what()));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "imbibe/fabric/wif.h"
 #include "imbibe/scene/describe_reader.h"
 #include "imbibe/scene/scene.h"
 
@@ -22,18 +23,12 @@ void describe(V& v, FabricFile& p) {
   describe(v, p.fabric);
 }
 
-bool is_wif(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension == ".wif";
-}
-
 }  // namespace
 
 std::vector<NamedFabric> read_fabrics(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   std::vector<Problem> problems;
   DataNode root;
-  if (is_wif(file)) {
+  if (is_wif_name(file.string())) {
     if (!std::filesystem::exists(file)) throw InputError(fmt::format("there is no file '{}'", file.string()));
     root.kind = DataNode::Kind::map;
     DataNode weave;
@@ -72,7 +67,7 @@ Fabric build_named_fabric(const NamedFabric& named, const FibreLibrary& fibres) 
     for (const Problem& problem : error.problems()) {
       problems.push_back(problem.file.empty() ? problem_at(place_of(named.places, problem.key), problem.key, problem.message)
                                               : problem);
-      if (!problems.back().file.empty() || !is_wif(named.spec.weave)) continue;
+      if (!problems.back().file.empty() || !is_wif_name(named.spec.weave)) continue;
       problems.back().file = named.spec.weave;  // the draft has no such key: it is given beside it
       problems.back().message += fmt::format("; give it with --set {}=...", problem.key);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "imbibe/fabric/wif.h"
 #include "imbibe/scene/cloth_builder.h"
 #include "imbibe/scene/describe_reader.h"
 #include "imbibe/scene/describe_writer.h"
@@ -24,30 +25,26 @@ std::string resolved(const std::string& name, const std::filesystem::path& folde
   return std::filesystem::absolute(folder / path).lexically_normal().string();
 }
 
-bool names_wif(const std::string& weave) {
-  std::string end = weave.size() < 4 ? "" : weave.substr(weave.size() - 4);
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
-  return end == ".wif";
+// The keys that name files, all of them: visit(name, key).
+template <class AnyScene, class Visit>
+void visit_file_names(AnyScene& scene, Visit&& visit) {
+  for (std::size_t i = 0; i < scene.textiles.size(); ++i) {
+    auto& textile = scene.textiles[i];
+    if (is_wif_name(textile.fabric.weave)) visit(textile.fabric.weave, fmt::format("textiles[{}].weave", i));
+    if (textile.sheet.soft && textile.sheet.soft->mesh)
+      visit(*textile.sheet.soft->mesh, fmt::format("textiles[{}].sheet.soft.mesh", i));
+  }
+  for (std::size_t i = 0; i < scene.liquid.pipes.size(); ++i)
+    if (scene.liquid.pipes[i].file) visit(*scene.liquid.pipes[i].file, fmt::format("liquid.pipes[{}].file", i));
+  for (std::size_t i = 0; i < scene.solids.size(); ++i)
+    if (scene.solids[i].shape.file) visit(*scene.solids[i].shape.file, fmt::format("solids[{}].shape.file", i));
 }
 
 // File names become absolute, so that the resolved scene of a run folder runs from anywhere.
 void resolve_file_names(Scene& scene) {
-  for (std::size_t i = 0; i < scene.textiles.size(); ++i) {
-    FabricSpec& fabric = scene.textiles[i].fabric;
-    const std::filesystem::path folder = folder_of(scene, fmt::format("textiles[{}].weave", i));
-    fabric.folder = folder;
-    if (names_wif(fabric.weave)) fabric.weave = resolved(fabric.weave, folder);
-    std::optional<SoftSheetSpec>& soft = scene.textiles[i].sheet.soft;
-    if (soft && soft->mesh) soft->mesh = resolved(*soft->mesh, folder_of(scene, fmt::format("textiles[{}].sheet.soft.mesh", i)));
-  }
-  for (std::size_t i = 0; i < scene.liquid.pipes.size(); ++i) {
-    std::optional<std::string>& file = scene.liquid.pipes[i].file;
-    if (file) file = resolved(*file, folder_of(scene, fmt::format("liquid.pipes[{}].file", i)));
-  }
-  for (std::size_t i = 0; i < scene.solids.size(); ++i) {
-    std::optional<std::string>& file = scene.solids[i].shape.file;
-    if (file) file = resolved(*file, folder_of(scene, fmt::format("solids[{}].shape.file", i)));
-  }
+  for (std::size_t i = 0; i < scene.textiles.size(); ++i)
+    scene.textiles[i].fabric.folder = folder_of(scene, fmt::format("textiles[{}].weave", i));
+  visit_file_names(scene, [&](std::string& name, const std::string& key) { name = resolved(name, folder_of(scene, key)); });
 }
 
 // Names become parts of file names, which end at 255 bytes.
@@ -134,6 +131,12 @@ Scene scene_from(DataNode root, std::vector<Problem> problems, const std::vector
 }
 
 }  // namespace
+
+std::set<std::string> files_named_by(const Scene& scene) {
+  std::set<std::string> files;
+  visit_file_names(scene, [&](const std::string& name, const std::string&) { files.insert(name); });
+  return files;
+}
 
 Real output_interval(const Scene& scene) { return scene.output.every.value_or(scene.duration / 50); }
 

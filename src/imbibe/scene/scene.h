@@ -8,6 +8,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -385,6 +386,9 @@ void describe(V& v, Scene& p) {
   v.group("measures", p.measures, "what counts as wet");
   v.group("limits", p.limits, "guard rails of time, memory and disk");
 }
+
+// Every file that building the scene would open, beside those of the library.
+std::set<std::string> files_named_by(const Scene& scene);
 
 // The time between outputs.
 Real output_interval(const Scene& scene);
