@@ -32,10 +32,12 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 struct Server::Connection {
   int fd = -1;
   std::uint64_t viewer = 0;  // 0: still HTTP
-  bool closing = false;      // after what waits is written
+  bool closing = false;      // after what waits is written, or its time is up
+  std::optional<Clock::time_point> closing_since;
   bool closed = false;
   std::string in, out;
   std::size_t sent = 0;      // of out
+  std::size_t largest = 0;   // message that it was sent
   Clock::time_point opened = Clock::now(), last_frame{};
   MessageReader messages{longest_message};
   double tokens = 50;        // messages it may send now
@@ -115,13 +117,12 @@ void Server::read_from(Connection& c) {
   char buffer[65536];
   const ssize_t n = recv(c.fd, buffer, sizeof buffer, 0);
   if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) c.closed = true;
-  if (n <= 0) return;
+  if (n <= 0 || c.closing) return;  // what a closing connection still sends is thrown away
   if (c.viewer == 0) c.in.append(buffer, static_cast<std::size_t>(n)), take_request(c);
   else c.messages.feed({buffer, static_cast<std::size_t>(n)});
 }
 
 void Server::take_request(Connection& c) {
-  if (c.closing) return;  // one request per connection
   const std::size_t end = c.in.find("\r\n\r\n");
   if (end == std::string::npos ? c.in.size() > longest_request : end > longest_request) {
     ++counts_.refused;
@@ -146,10 +147,12 @@ void Server::take_request(Connection& c) {
 
 void Server::send(Connection& c, Opcode opcode, std::string_view payload) {
   if (c.closed || c.closing) return;
-  if (c.out.size() - c.sent > most_unread) {
+  if (c.out.size() - c.sent > most_unread) write_to(c);  // a large cloth's geometry alone is more: see whether it reads
+  if (c.out.size() - c.sent > most_unread + c.largest) {
     c.closed = true;  // it reads nothing
     return;
   }
+  c.largest = std::max(c.largest, payload.size());
   append_frame(c.out, opcode, payload);
 }
 
@@ -281,6 +284,8 @@ void Server::drop_closed() {
   bool viewer_left = false;
   for (auto& c : connections_) {
     if (!c->closed && c->viewer == 0 && seconds_since(c->opened) > longest_request_s) c->closed = true;
+    if (c->closing && !c->closing_since) c->closing_since = Clock::now();
+    if (c->closing && seconds_since(*c->closing_since) > longest_request_s) c->closed = true;
     if (!c->closed) continue;
     if (c->fd >= 0) close(c->fd);
     if (c->viewer == 0) continue;

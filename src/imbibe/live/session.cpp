@@ -78,7 +78,9 @@ void Session::begin() {
   last_ = nullptr;
   history_.clear();
   emit_due(world_);  // as run() does: drops that hang there at the start are seen before the first step
+  recorder_.reset();
   recorder_.emplace(setup_.record, scene_, world_);
+  begun_ = true;
   rebase();
   time_reached_->store(world_.time);
   speed_time_ = world_.time, speed_wall_ = Clock::now(), speed_ = 0;
@@ -102,25 +104,39 @@ void Session::thread() {
     std::string reason = "ended by the user";
     RunStatus status = RunStatus::done;
     try {
+      if (!begun_) begin();
       run(world_, plan, hooks);
     } catch (const std::exception& error) {  // numerics, the disk, or our bug: the page says so and may start anew
       reason = error.what(), status = RunStatus::failed;
-      failed_ = true, running_ = false;
-      outlet.tell(all_viewers, error_event(setup_.swatch, "simulation", reason));
-      publish();
-      Real until = world_.time;
-      while (!stop_) between_steps(world_, until);
+      wait_after_failure(reason);
     }
     end_recording(status, reason);
     stop_ = false;
     if (!next_) continue;
     scene_ = std::move(next_->first), world_ = std::move(next_->second);
     next_.reset();
-    begin();
+    begun_ = false;
+  }
+}
+
+// Answers the viewers until one of them starts anew. What fails here (a full disk, mostly) is told too: an exception that
+// left the thread would end the program.
+void Session::wait_after_failure(const std::string& reason) {
+  failed_ = true, running_ = false;
+  outlet.tell(all_viewers, error_event(setup_.swatch, "simulation", reason));
+  told_ = false;
+  Real until = world_.time;
+  while (!stop_) {
+    try {
+      between_steps(world_, until);
+    } catch (const std::exception& error) {
+      outlet.tell(all_viewers, error_event(setup_.swatch, "simulation", error.what()));
+    }
   }
 }
 
 void Session::end_recording(RunStatus status, const std::string& reason) {
+  if (!recorder_) return;  // it could not begin
   try {
     recorder_->finish(world_, status, reason);
   } catch (const std::exception& error) {
@@ -168,7 +184,7 @@ void Session::check_limits() {
     outlet.tell(all_viewers, notice_event(setup_.swatch, fmt::format("paused: {} particles, more than limits.max_particles",
                                                                      world_.liquid.particles.size())));
   }
-  if (recorder_->recording() && recorder_->bytes() > scene_.limits.max_disk) {
+  if (recorder_ && recorder_->recording() && recorder_->bytes() > scene_.limits.max_disk) {
     recorder_->record(false);
     outlet.tell(all_viewers, notice_event(setup_.swatch, "recording stopped: the run folder holds more than limits.max_disk"));
   }

@@ -49,6 +49,7 @@ class Session final : public Feed {
   using Clock = std::chrono::steady_clock;
 
   void thread();
+  void wait_after_failure(const std::string& reason);
   void begin();                                   // a new world is there
   bool between_steps(World& world, Real& until);  // RunHooks::before_step
   bool may_step(Real& wait_s);
@@ -79,6 +80,7 @@ class Session final : public Feed {
   std::uint32_t generation_ = 0, number_ = 0;
 
   bool running_ = true, ended_ = false, failed_ = false;
+  bool begun_ = false;  // begin() was carried out for this world
   bool stop_ = false;   // leave the run: a new world, or the end
   bool quit_ = false;
   bool told_ = false;   // the state since the last publish() is told
