@@ -186,8 +186,10 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   scratch.taken_kg.assign(scratch.supplies.size(), 0);
   const Vec3 gravity{dot(world.gravity, textile.placement.u), dot(world.gravity, textile.placement.v),
                      dot(world.gravity, textile.placement.n)};
+  TextileScratch& own = scratch.textiles[index];
+  if (own.model != textile.model) own = {textile.model, {}};
   const WettingReport wetting = step_wetting(*textile.model, textile.contents, scratch.supplies, scratch.taken_kg,
-                                             world.air, gravity, dt);
+                                             world.air, gravity, dt, own.wetting);
   report.wetting_iterations += wetting.newton_iterations;
   if (!wetting.converged)
     throw NumericalError(world.time, world.step, "wetting",
@@ -220,6 +222,7 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
 
 void exchange_all(World& world, Real dt, StepScratch& scratch, StepReport& report) {
   const auto start = Clock::now();
+  scratch.textiles.resize(world.textiles.size());
   Real next = std::numeric_limits<Real>::infinity();
   for (std::size_t t = 0; t < world.textiles.size(); ++t) exchange(world, t, dt, scratch, report, next);
   world.pace.since_wetting = 0;

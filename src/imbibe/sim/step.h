@@ -38,6 +38,13 @@ struct StepReport {
   double liquid_wall_s = 0, wetting_wall_s = 0, cloth_wall_s = 0;  // wall-clock seconds spent
 };
 
+// The network solver's memory for one textile. It holds on to the model that its rows were built for, so that another one
+// can never stand at the same address.
+struct TextileScratch {
+  std::shared_ptr<const WettingModel> model;
+  WettingScratch wetting;
+};
+
 // Work space kept between steps so that nothing is allocated; not state: results do not depend on it.
 struct StepScratch {
   LiquidScratch liquid;
@@ -45,6 +52,7 @@ struct StepScratch {
   std::vector<Shape> sheets;
   std::vector<Wall> walls;
   std::vector<std::vector<float>> saturation;  // per textile and node, for the face's contact angle
+  std::vector<TextileScratch> textiles;
   std::vector<FaceSupply> supplies;  // of footprint and reservoirs
   std::vector<Real> taken_kg;
   std::vector<std::uint8_t> dead;

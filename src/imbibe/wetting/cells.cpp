@@ -46,10 +46,17 @@ Vec3 kept_inside(const CellGrid& grid, const Vec3& x, Vec3 to, Vec3& velocity) {
   return x;
 }
 
+Real greatest_norm(std::span<const Vec3> vectors) {
+  Real square = 0;
+  for (const Vec3& v : vectors) square = std::max(square, squared_norm(v));
+  return std::sqrt(square);
+}
+
 struct Mover {
   const CellGrid& grid;
   const CellParams& params;
   const CellSurroundings& around;
+  Real gravity = greatest_norm(around.gravity);  // m/s2, the greatest of any cell
   std::vector<Real> saturation{};
   std::vector<Index> was_in{};
 
@@ -65,9 +72,7 @@ struct Mover {
     const Real pull = params.absorption_factor * std::max(fullest, 1e-3);
     Real step = dt;
     if (pull > 0) step = std::min(step, std::max(params.resistance * h * h / (8 * pull), 0.25 * h / std::sqrt(pull)));
-    Real gravity = 0, speed = 0;
-    for (const Vec3& g : around.gravity) gravity = std::max(gravity, norm(g));
-    for (const Vec3& v : c.parcel_velocity) speed = std::max(speed, norm(v));
+    const Real speed = greatest_norm(c.parcel_velocity);
     if (gravity > 0)
       step = std::min(step, std::max(0.25 * h * params.resistance / gravity, std::sqrt(0.5 * h / gravity)));
     if (speed > 0) step = std::min(step, std::max(0.25 * h / speed, dt * 1e-4));
@@ -91,11 +96,12 @@ struct Mover {
       v = drag.keep * v + drag.from_speed * a;
       x = kept_inside(grid, x, to, v);
     });
+    std::fill(c.content_kg.begin(), c.content_kg.end(), 0);
     for (std::size_t p = 0; p < c.parcels(); ++p) {
       const Index cell = grid.cell_at(c.parcel_place[p].x, c.parcel_place[p].y);
       if (cell != was_in[p]) moves.push_back({was_in[p], cell, c.parcel_kg[p]});
+      c.content_kg[cell] += c.parcel_kg[p];
     }
-    sum_contents(grid, c);
   }
 };
 

@@ -69,7 +69,8 @@ Sloped own_side(const WettingModel& m, const Work& w, std::size_t i, Real s) {
     return {s + w.own_share[i] * phi.value, 1 + w.own_share[i] * phi.slope};
   }
   const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, node, s, w.reached[i]) : filling_pressure(m, node, s);
-  const Sloped psi = YarnPotential{m.params.model, w.own_entry[i], m.params.yarn_size_index}(p.value);
+  const Real index = node < m.segments ? m.size_index[node] : m.params.yarn_size_index;  // a pore's links are its yarns'
+  const Sloped psi = YarnPotential{m.params.model, w.own_entry[i], index}(p.value);
   return {s + w.own_share[i] * psi.value, 1 + w.own_share[i] * psi.slope * p.slope};
 }
 

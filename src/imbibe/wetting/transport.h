@@ -59,7 +59,6 @@ struct TransportWorkspace {
     bool limited = false;
   };
   std::vector<Index> local_of;          // per node: its place in `active`, or no_index
-  std::vector<char> is_seed;
   std::vector<Index> active;
   std::vector<Real> volume, old_content, old_saturation, saturation, previous, pressure, pressure_slope, potential,
       potential_slope, face_head, face_share, release, release_slope, residual, change, reached, scale, own_share, own_entry;

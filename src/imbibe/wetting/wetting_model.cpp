@@ -182,6 +182,7 @@ void add_segments(WettingModel& m, const YarnNetwork& network) {
   for (std::size_t s = 0; s < m.segments; ++s) {
     const Real sum = weight[static_cast<std::size_t>(network.layer_of(s))];
     m.vapour_area[s] *= sum > 0 ? free_faces(m, s) * m.area / sum : 0;
+    if (m.volume[s] > 0) m.greatest_vapour_area = std::max(m.greatest_vapour_area, m.vapour_area[s] / m.volume[s]);
   }
 }
 

@@ -150,6 +150,7 @@ struct WettingModel {
   Real thickness = 0;  // m, of one layer, also the length of a pore from face to face
   Real stack_thickness = 0;  // m, of all layers
   Real area = 0;       // m2 of the sheet, one face
+  Real greatest_vapour_area = 0;  // m2/m3, of a segment: per volume that it holds
 
   // Materials
   std::vector<Fibre> fibres;          // per yarn type

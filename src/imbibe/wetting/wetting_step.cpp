@@ -71,10 +71,7 @@ Real longest_drying_step(const WettingModel& m, const Air& air) {
   const bool wet_bulb = m.params.surface_temperature == SurfaceTemperature::wet_bulb;
   const Real rate = evaporation_rate(air, 1, wet_bulb ? wet_bulb_temperature(air) : air.temperature);
   if (rate <= 0) return longest_step;
-  Real per_second = 0;
-  for (std::size_t s = 0; s < m.segments; ++s) {
-    if (m.volume[s] > 0) per_second = std::max(per_second, rate * m.vapour_area[s] / (m.liquid.density * m.volume[s]));
-  }
+  const Real per_second = rate * m.greatest_vapour_area / m.liquid.density;
   return per_second > 0 ? std::min(longest_step, dried_in_step / per_second) : longest_step;
 }
 
