@@ -139,6 +139,12 @@ TEST(Messages, GoodOnesAreRead) {
   EXPECT_FALSE(parse_message(R"({"type":"inspect","textile":0,"node":5})").needs_controls());
 }
 
+TEST(Messages, AnyMayAskToBeToldWhenItIsDone) {
+  EXPECT_EQ(parse_message(R"({"type":"pause","ask":7})").ask, 7);
+  EXPECT_EQ(parse_message(R"({"type":"pause"})").ask, 0);
+  EXPECT_NE(parse_message(R"({"type":"pause","ask":-1})").problem, "");
+}
+
 TEST(Messages, BadOnesSayWhatIsWrong) {
   for (const char* text :
        {"", "{", "[]", "null", "{}", R"({"type":"fly"})", R"({"type":"set"})", R"({"type":"set","assign":[]})",

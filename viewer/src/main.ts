@@ -6,7 +6,7 @@ import { compareDialog, galleryDialog, helpDialog } from './dialogs';
 import { drawLegend } from './legend';
 import { showPick } from './pick';
 import { Panel } from './panel';
-import { Flag, type ControlRow, type Frame, type HelloMessage, type InspectMessage, type Problem, type ServerMessage } from './protocol';
+import { Flag, type ClientMessage, type ControlRow, type Frame, type HelloMessage, type InspectMessage, type Problem, type ServerMessage } from './protocol';
 import { Swatch } from './swatch';
 import { duration, withPrefix } from './text';
 import { View, type Hit, type Quality } from './view';
@@ -94,8 +94,27 @@ function onMessage(message: ServerMessage): void {
     case 'speed': byId<HTMLSelectElement>('speed').value = String(message.limit); return;
     case 'swatches': return setSwatches(message.count);
     case 'inspect': return onInspect(message);
+    case 'done': return answered(message);
     case 'scene_text': return download('scene.yaml', new Blob([message.text], { type: 'text/yaml' }));
   }
+}
+
+// Messages that ask to be told when they were carried out: by every swatch that they are for.
+type Done = Extract<ServerMessage, { type: 'done' }>;
+const asked = new Map<number, { missing: number; resolve: (done: Done) => void }>();
+let asks = 0;
+function ask(message: ClientMessage & { swatch?: number }): Promise<Done> {
+  const number = ++asks;
+  return new Promise((resolve) => {
+    asked.set(number, { missing: message.swatch === 255 ? wanted : 1, resolve });
+    connection.send({ ...message, ask: number });
+  });
+}
+function answered(done: Done): void {
+  const waiting = asked.get(done.ask);
+  if (!waiting || --waiting.missing > 0) return;
+  asked.delete(done.ask);
+  waiting.resolve(done);
 }
 
 function onHello(message: HelloMessage): void {
@@ -372,6 +391,7 @@ Object.assign(window, {
     get hello() { return hello; },
     get holder() { return holder; },
     send: (message: { type: string }) => connection.send(message),
+    ask,
     sendRaw: (text: string) => connection.sendRaw(text),
     openText: (name: string, text: string) => connection.send({ type: 'open', swatch: 0, name, text }),
     screen: (place: [number, number, number], swatch = 0) => view.onScreen(new THREE.Vector3(...place).multiplyScalar(1000), swatch),

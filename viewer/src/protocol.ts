@@ -40,6 +40,9 @@ export interface TextileInfo {
   yarn_points: number[];
 }
 
+// A sheet whose nodes are cells of liquid; the owner of its sections comes after the textiles.
+export interface ClothInfo { name: string; colour: Vec3; nodes: number }
+
 export type SolidInfo = { name: string; colour: Vec3; contact_angle: number } & (
   | { form: 'plane'; point: Vec3; normal: Vec3 }
   | { form: 'box'; centre: Vec3; size: Vec3 }
@@ -58,6 +61,7 @@ export interface SceneMessage {
   gravity: Vec3;
   liquid: { name: string; spacing: number; particle_mass: number; density: number };
   textiles: TextileInfo[];
+  cloths: ClothInfo[];
   solids: SolidInfo[];
   controls: ControlRow[];
   history: (number | null)[][];
@@ -66,8 +70,8 @@ export interface SceneMessage {
 export interface InspectMessage {
   type: 'inspect';
   textile: number; node: number; name: string; place: Vec3;
-  kind: 'warp' | 'weft' | 'pore';
-  saturation: number; liquid_kg: number; capacity_kg: number; pressure: number;
+  kind: 'warp' | 'weft' | 'pore' | 'cell';
+  saturation: number; liquid_kg: number; capacity_kg?: number; pressure?: number; dry_kg?: number; speed?: number;
   yarn?: number; segment?: number; fibre?: string; radius?: number; contact_angle?: number; regain?: number; sorbed_kg?: number;
   throat?: number; opening?: [number, number];
 }
@@ -90,7 +94,8 @@ export type ServerMessage =
   | { type: 'notice'; swatch: number; message: string }
   | { type: 'speed'; swatch: number; limit: number }
   | { type: 'swatches'; count: number }
-  | { type: 'scene_text'; swatch: number; text: string };
+  | { type: 'scene_text'; swatch: number; text: string }
+  | { type: 'done'; swatch: number; ask: number; step: number; time: number };
 
 export interface Points { origin: Float32Array; step: Float32Array; xyz: Uint16Array }
 
@@ -101,7 +106,9 @@ export type Section =
   | { kind: 'yarns'; owner: number; points: Points }
   | { kind: 'pores'; owner: number; points: Points }
   | { kind: 'vertices'; owner: number; values: Float32Array }
-  | { kind: 'triangles'; owner: number; values: Uint32Array };
+  | { kind: 'triangles'; owner: number; values: Uint32Array }
+  | { kind: 'cloth triangles'; owner: number; values: Uint32Array }
+  | { kind: 'cloth places'; owner: number; values: Float32Array };
 
 export interface Frame {
   swatch: number; geometry: boolean; generation: number; number: number; flags: number;
@@ -137,6 +144,8 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
       case 5: sections.push({ kind: 'pores', owner, points: points() }); break;
       case 6: sections.push({ kind: 'vertices', owner, values: new Float32Array(buffer.slice(from, from + bytes)) }); break;
       case 7: sections.push({ kind: 'triangles', owner, values: new Uint32Array(buffer.slice(from, from + bytes)) }); break;
+      case 8: sections.push({ kind: 'cloth triangles', owner, values: new Uint32Array(buffer.slice(from, from + bytes)) }); break;
+      case 9: sections.push({ kind: 'cloth places', owner, values: new Float32Array(buffer.slice(from, from + bytes)) }); break;
       default: break;  // of a later version: left out
     }
     at = from + ((bytes + 3) & ~3);

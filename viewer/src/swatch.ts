@@ -1,6 +1,7 @@
 // One swatch on the page: its scene message, its yarns, liquid and solids in a three.js scene, and its rows.
 import * as THREE from 'three';
-import { applyChanges, type Frame, type HelloMessage, type SceneMessage } from './protocol';
+import { applyChanges, type Frame, type HelloMessage, type Points, type SceneMessage } from './protocol';
+import { Cloth } from './cloth';
 import { Liquid } from './liquid';
 import { Series } from './series';
 import { solidMesh } from './solids';
@@ -9,6 +10,7 @@ import { MM, Yarns, type YarnLook } from './yarns';
 export class Swatch {
   readonly scene = new THREE.Scene();
   yarns: Yarns[] = [];
+  cloths: Cloth[] = [];                // owners after the textiles
   liquid: Liquid | null = null;
   pores: Float32Array[] = [];          // mm, three per pore
   readonly series: Series;
@@ -53,7 +55,7 @@ export class Swatch {
     this.frameBytes += frame.bytes;
     for (const section of frame.sections) {
       if (section.kind === 'particles') { this.liquid?.set(section.points); continue; }
-      const yarns = 'owner' in section ? this.yarns[section.owner] : undefined;
+      const yarns = 'owner' in section ? this.yarns[section.owner] ?? this.cloths[section.owner - this.textiles.length] : undefined;
       if (!yarns) continue;
       if (section.kind === 'saturations') yarns.saturation.set(section.values), yarns.saturationChanged();
       else if (section.kind === 'changes') applyChanges(yarns.saturation, section.bytes, section.count), yarns.saturationChanged();
@@ -66,8 +68,17 @@ export class Swatch {
     if (!message || frame.generation !== message.generation) return;
     this.clear();
     const meshes = new Map<number, { vertices: Float32Array; triangles: Uint32Array }>();
+    const places = new Map<number, Float32Array>(), nodes = new Map<number, Points>();
+    for (const section of frame.sections) if (section.kind === 'cloth places') places.set(section.owner, section.values);
     for (const section of frame.sections) {
-      if (section.kind === 'yarns') {
+      if (section.kind === 'yarns' && section.owner >= message.textiles.length) {
+        nodes.set(section.owner, section.points);
+      } else if (section.kind === 'cloth triangles') {
+        const i = section.owner - message.textiles.length;
+        const cloth = new Cloth(message.cloths[i]!, nodes.get(section.owner)!, section.values, places.get(section.owner)!, this.look);
+        this.cloths[i] = cloth;
+        this.things.add(cloth.mesh);
+      } else if (section.kind === 'yarns') {
         const yarns = new Yarns(message.textiles[section.owner]!, section.points, this.look, sides);
         this.yarns[section.owner] = yarns;
         this.things.add(yarns.group);
@@ -85,6 +96,7 @@ export class Swatch {
     for (const yarns of this.yarns)
       for (let i = 0; i < yarns.firstPoint[yarns.firstPoint.length - 1]!; ++i)
         this.bounds.expandByPoint(new THREE.Vector3(yarns.points[4 * i]!, yarns.points[4 * i + 1]!, yarns.points[4 * i + 2]!));
+    for (const cloth of this.cloths) this.bounds.union(cloth.mesh.geometry.boundingBox!);
     const extent = this.bounds.isEmpty() ? 20 : this.bounds.getSize(new THREE.Vector3()).length();
     message.solids.forEach((solid, i) => {
       const mesh = solidMesh(solid, extent, meshes.get(i));
@@ -119,11 +131,12 @@ export class Swatch {
   }
 
   private clear(): void {
-    for (const yarns of this.yarns) yarns.dispose();
+    for (const thing of [...this.yarns, ...this.cloths]) thing.dispose();
     this.liquid?.dispose();
     this.things.traverse((thing) => { if (thing instanceof THREE.Mesh && thing.geometry) thing.geometry.dispose(); });
     this.things.clear();
     this.yarns = [];
+    this.cloths = [];
     this.pores = [];
     this.liquid = null;
   }

@@ -231,6 +231,21 @@ export class View {
         best = { swatch: index, textile, node: info.segments + i, place: a.clone() };
       }
     });
+    const hit = this.hitCloth(swatch, ray);
+    if (!hit || hit.distance > nearest) return best;
+    const { a: i, b: j, c: k } = hit.face!, p = swatch.cloths[hit.cloth]!.points;
+    const node = [i, j, k].sort((m, n) => a.fromArray(p, 3 * m).distanceTo(hit.point) - b.fromArray(p, 3 * n).distanceTo(hit.point))[0]!;
+    return { swatch: index, textile: swatch.textiles.length + hit.cloth, node, place: hit.point };
+  }
+
+  // The nearest point of a soft sheet on a ray, on the side of the section that is seen.
+  private hitCloth(swatch: Swatch, ray: THREE.Ray): (THREE.Intersection & { cloth: number }) | null {
+    const caster = new THREE.Raycaster(ray.origin, ray.direction);
+    let best: (THREE.Intersection & { cloth: number }) | null = null;
+    swatch.cloths.forEach((cloth, i) => {
+      const hit = caster.intersectObject(cloth.mesh, false).find((h) => this.cut === null || this.plane.distanceToPoint(h.point) >= 0);
+      if (hit && (!best || hit.distance < best.distance)) best = { ...hit, cloth: i };
+    });
     return best;
   }
 
@@ -250,7 +265,9 @@ export class View {
       if (Math.abs(d.dot(u)) > 500 * info.size[0] || Math.abs(d.dot(v)) > 500 * info.size[1]) continue;
       if (!best || hit.distanceTo(ray.origin) < best.distanceTo(ray.origin)) best = hit;
     }
-    if (!best && swatch.textiles.length === 0) best = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
+    const cloth = this.hitCloth(swatch, ray);
+    if (cloth && (!best || cloth.distance < best.distanceTo(ray.origin))) best = cloth.point;
+    if (!best && swatch.textiles.length + swatch.cloths.length === 0) best = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
     return best ? { swatch: index, at: [best.x / 1000, best.y / 1000, best.z / 1000] } : null;
   }
 

@@ -43,6 +43,19 @@ void place(out vec3 position_, out vec3 normal_) {
   position_ = p + aPiece.w * normal_;
 }`;
 
+// Colour of what holds liquid, by its saturation: of the bar, or natural, where wet is darker.
+export const WET_COLOUR = `
+uniform float uNatural; uniform vec4 uBar[11];
+vec3 linearOf(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
+vec3 wetColour(vec3 dry, float saturation) {
+  int level = saturation < 5e-4 ? 0 : clamp(int(ceil(10.0 * saturation - 1e-3)), 1, 10);
+  vec4 bar = uBar[level];
+  float wet = smoothstep(0.0, 0.9, saturation);
+  return mix(linearOf(mix(vec3(1.0), bar.rgb, bar.a)), dry * mix(1.0, 0.42, wet), uNatural);
+}
+float wetRoughness(float saturation) { return mix(0.92, mix(0.95, 0.38, smoothstep(0.0, 0.9, saturation)), uNatural); }
+`;
+
 const VARYINGS = 'varying vec4 vYarn; varying float vSaturation; varying vec2 vSurface; varying float vOcclusion;';
 
 export class Yarns {
@@ -145,22 +158,17 @@ export class Yarns {
           vOcclusion = mix(0.35, 1.0, smoothstep(0.0, 0.85, height));`);
       if (depthOnly) return;
       shader.fragmentShader = `
-        uniform float uNatural; uniform vec4 uBar[11];
+        ${WET_COLOUR}
         ${VARYINGS}
-        vec3 linearOf(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
       ` + shader.fragmentShader
         .replace('#include <color_fragment>', `
-          int level = vSaturation < 5e-4 ? 0 : clamp(int(ceil(10.0 * vSaturation - 1e-3)), 1, 10);
-          vec4 bar = uBar[level];
-          vec3 barColour = linearOf(mix(vec3(1.0), bar.rgb, bar.a));
           float wet = smoothstep(0.0, 0.9, vSaturation);
-          vec3 natural = vYarn.rgb * mix(1.0, 0.42, wet);
           // The lie of the twist: fine fibres winding around the yarn.
           float winding = sin(5.0 * vSurface.y + 2.6 * vSurface.x) * 0.5 + sin(11.0 * vSurface.y + 5.7 * vSurface.x) * 0.5;
           float fibres = 1.0 + mix(0.035, 0.06, uNatural) * winding * (1.0 - 0.6 * wet);
-          diffuseColor.rgb = mix(barColour, natural, uNatural) * fibres * vOcclusion;`)
+          diffuseColor.rgb = wetColour(vYarn.rgb, vSaturation) * fibres * vOcclusion;`)
         .replace('#include <roughnessmap_fragment>', `
-          float roughnessFactor = mix(0.92, mix(0.95, 0.38, wet), uNatural);`);
+          float roughnessFactor = wetRoughness(vSaturation);`);
     };
     material.customProgramCacheKey = () => `yarns-${depthOnly}`;
     return material;

@@ -10,10 +10,15 @@ import { fileURLToPath } from 'node:url';
 export const root = resolve(dirname(fileURLToPath(import.meta.url)), '..', '..');
 export const command = process.env.IMBIBE_COMMAND ?? join(root, 'build', 'release', 'imbibe');
 
+// ms that a condition may take to come true: a loaded machine is slow, a fault never comes true.
+export const patience = 180000;
+
 export async function openBrowser() {
   const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find((p) => existsSync(p));
   if (!executablePath) throw new Error('no chromium: apt-get install chromium');
-  return chromium.launch({ executablePath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+  return chromium.launch({ executablePath, timeout: patience, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--disable-dev-shm-usage', '--disable-background-timer-throttling',
+    '--disable-renderer-backgrounding', '--disable-backgrounding-occluded-windows'] });
 }
 
 // Starts `imbibe live` and gives its address once it is printed.
@@ -31,7 +36,7 @@ export async function startLive(scene, ...options) {
     child.stdout.on('data', take);
     child.stderr.on('data', take);
     child.on('exit', (code) => fail(new Error(`imbibe live ended with ${code}:\n${output}`)));
-    setTimeout(() => fail(new Error(`imbibe live printed no address:\n${output}`)), 60000).unref();
+    setTimeout(() => fail(new Error(`imbibe live printed no address:\n${output}`)), patience).unref();
   });
   const ended = new Promise((done) => child.on('exit', done));
   return {
@@ -45,6 +50,7 @@ export async function startLive(scene, ...options) {
 // A page with its console errors collected.
 export async function openPage(browser, url, { width = 1280, height = 720, query = 'quality=plain&theme=light' } = {}) {
   const page = await browser.newPage({ viewport: { width, height } });
+  page.setDefaultTimeout(patience);
   page.problems = [];
   page.on('console', (m) => { if (m.type() === 'error') page.problems.push(m.text()); });
   page.on('pageerror', (e) => page.problems.push(String(e)));
@@ -53,10 +59,8 @@ export async function openPage(browser, url, { width = 1280, height = 720, query
   return page;
 }
 
-export const live = (page, read, argument) => page.evaluate(read, argument);
-
 // Asks the page until `test` holds there. (waitForFunction would want the page to allow eval(), which it does not.)
-export async function until(page, test, argument, timeout = 60000) {
+export async function until(page, test, argument, timeout = patience) {
   const end = Date.now() + timeout;
   for (;;) {
     const value = await page.evaluate(test, argument);
@@ -65,3 +69,6 @@ export async function until(page, test, argument, timeout = 60000) {
     await new Promise((done) => setTimeout(done, 50));
   }
 }
+
+// Sends a message and waits until the simulation has carried it out: at which step, at what time.
+export const ask = (page, message) => page.evaluate((m) => window.imbibe.ask(m), message);

@@ -1,227 +1,321 @@
-// The page in a real browser. Waits for counters that the page shows (window.imbibe), never for frame rates.
+// The page in a real browser: one browser, one page for most tests. Each test begins a world of its own and waits for what
+// the page counts and the simulation answers (window.imbibe), never for a time or a frame rate.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { command, openBrowser, openPage, root, startLive, until } from './browser.mjs';
+import { ask, command, openBrowser, openPage, root, startLive, until } from './browser.mjs';
+import { Watcher, processorSeconds } from './watcher.mjs';
 
-const small = 'viewer/test/small.yaml';
+const small = 'viewer/test/small.yaml', smallText = readFileSync(join(root, small), 'utf8');
+const environment = { ...process.env, IMBIBE_DATA_DIR: root };
 let browser, server, page;
 
 const send = (p, message) => p.evaluate((m) => window.imbibe.send(m), message);
 const value = (p, name, swatch = 0) => p.evaluate(([n, s]) => window.imbibe.swatches[s].value(n), [name, swatch]);
 const reaches = (p, name, least, swatch = 0) =>
   until(p, ([n, x, s]) => (window.imbibe.swatches[s]?.value(n) ?? -1) >= x, [name, least, swatch]);
-const changes = (p) => p.evaluate(() => window.imbibe.counters.changes);
-const paused = (p) => until(p, () => (window.imbibe.swatches[0].flags & 1) === 0);
+const errors = (p) => p.evaluate(() => window.imbibe.counters.errors);
+const text = (p, selector) => p.evaluate((s) => document.querySelector(s).textContent, selector);
+
+// Paused, and the page shows the step where it is.
+async function pause(p, swatch = 0) {
+  const { step, time } = await ask(p, { type: 'pause', swatch });
+  await until(p, (n) => window.imbibe.swatches.every((s) => (s.flags & 1) === 0) && window.imbibe.swatches[0].value('steps') === n, step);
+  return { step, time };
+}
+
+async function steps(p, count) {
+  const { step } = await ask(p, { type: 'step', swatch: 0, steps: count });
+  await until(p, (n) => window.imbibe.swatches[0].value('steps') === n, step + count);
+}
+
+// A new world of the small scene, paused at its start, all values as in the file, seen as at the start.
+async function begin(p = page, scene = smallText) {
+  await pause(p);
+  const generation = await p.evaluate(() => window.imbibe.swatches[0].generation);
+  const { errors: seen, problems } = await p.evaluate(() => window.imbibe.counters);
+  await ask(p, { type: 'open', swatch: 0, name: 'small.yaml', text: scene });
+  await until(p, ([g, n]) => (window.imbibe.swatches[0].generation > g && window.imbibe.swatches[0].frames > 0) || window.imbibe.counters.errors > n, [generation, seen]);
+  assert.equal(await errors(p), seen, JSON.stringify(problems));
+  await pause(p);
+  await p.keyboard.press('Escape');
+  await p.keyboard.press('f');
+}
 
 async function set(p, ...assign) {
-  const seen = await changes(p);
-  await send(p, { type: 'set', swatch: 0, assign });
+  const seen = await p.evaluate(() => window.imbibe.counters.changes);
+  await ask(p, { type: 'set', swatch: 0, assign });
   await until(p, (n) => window.imbibe.counters.changes > n, seen);
 }
 
-async function reset(p) {
-  await send(p, { type: 'pause', swatch: 0 });
-  await paused(p);
-  const before_ = await p.evaluate(() => window.imbibe.swatches[0].generation);
-  await send(p, { type: 'reset', swatch: 0 });
-  await until(p, (g) => window.imbibe.swatches[0].generation > g && window.imbibe.swatches[0].frames > 0, before_);
+async function refused(p, act, pattern) {
+  const seen = await errors(p);
+  await act();
+  await until(p, (n) => window.imbibe.counters.errors > n, seen);
+  const problems = await p.evaluate(() => window.imbibe.counters.problems);
+  assert.match(problems.map((one) => one.message).join('\n'), pattern);
+  return problems;
+}
+
+async function saved(p, act) {
+  const [download] = await Promise.all([p.waitForEvent('download'), act()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+// Where a place (m) of the first swatch is on the page.
+async function pixel(p, place) {
+  const box = await p.locator('#canvas').boundingBox();
+  const at = await p.evaluate((x) => window.imbibe.screen(x), place);
+  return [box.x + at.x, box.y + at.y];
 }
 
 before(async () => {
   browser = await openBrowser();
   server = await startLive(small, '--speed', '0');
-  page = await openPage(browser, server.url);
+  page = await openPage(browser, server.url, { width: 1100, height: 680 });
 });
 after(async () => {
   await browser?.close();
   await server?.remove();
 });
 
-test('frames arrive, and the clock waits for the first page to say run', async () => {
+test('the clock waits for the first page to say run; then frames arrive', async () => {
   assert.equal(await value(page, 'time_s'), 0);
   await page.click('#run');
   await reaches(page, 'time_s', 0.004);
   assert.ok((await page.evaluate(() => window.imbibe.counters.frames)) > 1);
 });
 
-test('pause holds the clock, step moves it by one step, run goes on', async () => {
+test('keys: space pauses and the clock holds, a point makes one step, R begins anew', async () => {
+  await begin();
   await page.keyboard.press(' ');
-  await paused(page);
-  const time = await value(page, 'time_s'), steps = await value(page, 'steps');
-  await new Promise((done) => setTimeout(done, 300));
-  assert.equal(await value(page, 'time_s'), time);
-  await page.click('#step');
-  await reaches(page, 'steps', steps + 1);
-  await new Promise((done) => setTimeout(done, 200));
-  assert.equal(await value(page, 'steps'), steps + 1);
+  await reaches(page, 'steps', 3);
+  await page.keyboard.press(' ');
+  await until(page, () => (window.imbibe.swatches[0].flags & 1) === 0);
+  const { step, time } = await ask(page, { type: 'pause', swatch: 0 });
+  assert.equal((await ask(page, { type: 'save' })).step, step, 'nothing moves while it is paused');
+  await page.keyboard.press('.');
+  await reaches(page, 'steps', step + 1);
+  assert.equal((await ask(page, { type: 'save' })).step, step + 1);
+  assert.ok((await value(page, 'time_s')) > time);
+  const generation = await page.evaluate(() => window.imbibe.swatches[0].generation);
+  await page.keyboard.press('r');
+  await until(page, (g) => window.imbibe.swatches[0].generation > g && window.imbibe.swatches[0].frames > 0, generation);
+  assert.equal(await value(page, 'time_s'), 0);
 });
 
 test('every parameter of the panel comes from the description, with its unit and range', async () => {
+  await begin();
   const seen = await page.evaluate(() => [...document.querySelectorAll('[data-path]')].map((e) => [e.dataset.path, e.title]));
-  const described = JSON.parse(execFileSync(command, ['params', '--json'], { env: { ...process.env, IMBIBE_DATA_DIR: root } }));
+  const described = JSON.parse(execFileSync(command, ['params', '--json'], { env: environment }));
   const known = new Set(described.map((row) => row.path ?? row.key));
   assert.ok(seen.length > 20, `only ${seen.length} parameters are shown`);
   for (const [path] of seen) assert.ok(known.has(path.replace(/\[\d+\]/g, '[]')), `${path} is not described`);
   const angle = seen.find(([path]) => path === 'textiles[0].contact_angle');
   assert.match(angle[1], /from 0 to 180 deg/);
   assert.match(angle[1], /next step/);
-});
-
-test('a parameter that cannot change while it runs says so', async () => {
   await page.fill('#filter', 'particle mass');
-  const title = await page.getAttribute('[data-path="liquid.particle_mass"]', 'title');
-  assert.match(title, /begins anew/);
+  assert.match(await page.getAttribute('[data-path="liquid.particle_mass"]', 'title'), /begins anew/);
   await page.fill('#filter', '');
 });
 
-// todo: the change is taken, but under load other steps were made between reading the counter and the change.
-test('a contact angle set with the slider reaches the solver within two steps, and the uptake curve bends', { todo: 'the step counter may run on' }, async () => {
+test('a contact angle set with the slider reaches the solver at the next step, and the uptake curve bends', async () => {
+  await begin();
   await send(page, { type: 'run', swatch: 0 });
   await reaches(page, 'yarn_kg', 3e-7);
-  await send(page, { type: 'pause', swatch: 0 });
-  await paused(page);
-  const steps = await value(page, 'steps'), yarn = await value(page, 'yarn_kg');
+  const { step } = await pause(page);
+  const yarn = await value(page, 'yarn_kg');
   const input = page.locator('[data-path="textiles[0].contact_angle"] input');
   await input.fill('120');
   await input.press('Enter');
   await until(page, () => window.imbibe.counters.lastChange?.set[0]?.startsWith('textiles[0].contact_angle=120'));
-  assert.equal(await page.evaluate(() => window.imbibe.counters.lastChange.step), steps);
-  await send(page, { type: 'step', swatch: 0, steps: 2 });
-  await reaches(page, 'steps', steps + 2);
+  assert.equal(await page.evaluate(() => window.imbibe.counters.lastChange.step), step);
+  await steps(page, 2);
   assert.ok((await value(page, 'yarn_kg')) < 0.01 * yarn, 'yarns that no longer wet give their liquid off');
   await send(page, { type: 'run', swatch: 0 });
-  const time = await value(page, 'time_s');
-  await reaches(page, 'time_s', time + 0.01);
+  await reaches(page, 'time_s', (await value(page, 'time_s')) + 0.006);
+  await pause(page);
   assert.ok((await value(page, 'yarn_kg')) < 0.01 * yarn, 'and take none up');
   assert.ok((await value(page, 'ledger_error')) < 1e-10);
-});
-
-test('reset begins anew with the angle as changed', async () => {
-  await reset(page);
-  assert.equal(await value(page, 'time_s'), 0);
+  // Begun anew, the angle is as changed.
+  const generation = await page.evaluate(() => window.imbibe.swatches[0].generation);
+  await page.click('#reset');
+  await until(page, (g) => window.imbibe.swatches[0].generation > g && window.imbibe.swatches[0].frames > 0, generation);
   assert.equal(Math.round(await page.evaluate(() => window.imbibe.panel.value('textiles[0].contact_angle'))), 120);
 });
 
 test('a value out of range is refused with its range', async () => {
-  const errors = await page.evaluate(() => window.imbibe.counters.errors);
-  await send(page, { type: 'set', swatch: 0, assign: ['air.humidity=150 %'] });
-  await until(page, (n) => window.imbibe.counters.errors > n, errors);
-  assert.match(await page.textContent('#toasts .error'), /100 %/);
+  await begin();
+  await refused(page, () => send(page, { type: 'set', swatch: 0, assign: ['air.humidity=150 %'] }), /100 %/);
+  assert.match(await text(page, '#toasts .error'), /100 %/);
 });
 
 test('a click on the cloth drops a drop there', async () => {
-  const supplied = await value(page, 'supplied_kg');
-  await page.keyboard.press('d');
+  await begin();
+  const supplied = await value(page, 'supplied_kg'), seen = await page.evaluate(() => window.imbibe.counters.changes);
   await page.keyboard.press('t');
+  await page.keyboard.press('d');
   await page.fill('#drop-volume', '0.5');
-  const at = await page.evaluate(() => window.imbibe.screen([3e-3, 3e-3, 0.3e-3]));
-  const box = await page.locator('#canvas').boundingBox();
-  const seen = await changes(page);
-  await page.mouse.click(box.x + at.x, box.y + at.y);
+  await page.mouse.click(...await pixel(page, [3e-3, 3e-3, 0.3e-3]));
   await until(page, (n) => window.imbibe.counters.changes > n, seen);
-  await send(page, { type: 'step', swatch: 0, steps: 3 });
-  await until(page, (kg) => window.imbibe.swatches[0].value('supplied_kg') > kg, supplied + 4e-7);
-  const set_ = await page.evaluate(() => window.imbibe.counters.lastChange.set[0]);
-  const [x, y] = set_.match(/centre: \[([^,]+), ([^,]+),/).slice(1).map(Number);
-  assert.ok(Math.hypot(x - 3e-3, y - 3e-3) < 0.4e-3, set_);  // a pixel is 0.03 mm; the face lies above the middle
+  await steps(page, 3);
+  assert.ok((await value(page, 'supplied_kg')) > supplied + 4e-7);
+  const made = await page.evaluate(() => window.imbibe.counters.lastChange.set[0]);
+  const [x, y] = made.match(/centre: \[([^,]+), ([^,]+),/).slice(1).map(Number);
+  assert.ok(Math.hypot(x - 3e-3, y - 3e-3) < 0.4e-3, made);  // a pixel is 0.03 mm; the face lies above the middle
 });
 
-test('a picked yarn shows what it holds', { todo: 'misses the yarn when an earlier test moved the view' }, async () => {
-  await page.click('#mode-look');
-  const box = await page.locator('#canvas').boundingBox();
-  const at = await page.evaluate(() => window.imbibe.screen([-3e-3, -3e-3, 0.3e-3]));
-  await page.mouse.click(box.x + at.x, box.y + at.y);
+test('a picked yarn shows what it holds, even under the line that tells of a change', async () => {
+  await begin();
+  await page.keyboard.press('t');
+  await page.keyboard.press('i');
+  await set(page, 'air.humidity=40 %');
+  await page.mouse.click(...await pixel(page, [-3e-3, -3e-3, 0.3e-3]));
   await page.waitForSelector('#pick:not([hidden])');
-  const text = await page.textContent('#pick');
-  assert.match(text, /(yarn|Pore)/);
-  assert.match(text, /saturation/);
+  const shown = await text(page, '#pick');
+  assert.match(shown, /(yarn|Pore)/);
+  for (const what of [/saturation/, /pressure/, /liquid/]) assert.match(shown, what);
   await page.keyboard.press('Escape');
+  assert.equal(await page.isVisible('#pick'), false);
 });
 
 test('the picture is not blank and the page shows the eleven colours of the bar', async () => {
-  const colours = await page.evaluate(async () => {
-    const bitmap = await createImageBitmap(await window.imbibe.view.picture());
+  await begin();
+  const png = await saved(page, () => page.keyboard.press('p'));
+  assert.match(png.name, /\.png$/);
+  assert.equal(png.bytes.subarray(1, 4).toString(), 'PNG');
+  const colours = await page.evaluate(async (bytes) => {
+    const bitmap = await createImageBitmap(new Blob([new Uint8Array(bytes)]));
     const canvas = new OffscreenCanvas(bitmap.width, bitmap.height), context = canvas.getContext('2d');
     context.drawImage(bitmap, 0, 0);
     const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
     const seen = new Set();
     for (let i = 0; i < data.length; i += 4) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
     return seen.size;
-  });
+  }, [...png.bytes]);
   assert.ok(colours > 200, `only ${colours} colours`);
   const bar = await page.evaluate(() => [...document.querySelectorAll('#legend i')].map((e) => getComputedStyle(e).backgroundColor));
   assert.equal(bar.length, 11);
   assert.equal(new Set(bar).size, 11);
   assert.equal(bar[10], 'rgb(255, 255, 255)');
-  assert.match(await page.textContent('#legend'), /Liquid content\s*% of saturation/);
+  assert.match(await text(page, '#legend'), /Liquid content\s*% of saturation/);
 });
 
-test('a bad WIF shows its error with the line, a good one is woven', async () => {
-  const errors = await page.evaluate(() => window.imbibe.counters.errors);
-  await page.evaluate(() => window.imbibe.openText('bad.wif', '[WIF]\nVersion=1.1\n[WEAVING]\nShafts=oops\nTreadles=2\n'));
-  await until(page, (n) => window.imbibe.counters.errors > n, errors);
-  const problem = await page.evaluate(() => window.imbibe.counters.problems.find((p) => p.line > 0));
-  assert.equal(problem.file, 'bad.wif');
-  assert.match(await page.textContent('#toasts'), /bad\.wif:\d+:/);
+test('views by button and key; a section cuts the cloth; light and dark', async () => {
+  await begin();
+  const camera = () => page.evaluate(() => window.imbibe.view.camera.position.toArray());
+  await page.keyboard.press('t');
+  const [x, , z] = await camera();
+  assert.ok(Math.abs(x) < 0.1 && z > 10, 'from above');
+  await page.click('#side');
+  assert.ok((await camera())[1] < -10, 'from the side');
+  await page.keyboard.press('ArrowRight');
+  assert.ok((await camera())[0] > 1, 'turned by a key');
+  const draws = await page.evaluate(() => window.imbibe.view.draws);
+  await page.keyboard.press('x');
+  assert.ok(await page.isVisible('#section-place'));
+  await until(page, (n) => window.imbibe.view.draws > n, draws);
+  await page.keyboard.press('x');
+  const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+  const before_ = await theme();
+  await page.keyboard.press('l');
+  assert.notEqual(await theme(), before_);
+  await page.keyboard.press('l');
+});
+
+test('a bad WIF shows its error with the line, a good one dropped on the page is woven', async () => {
+  await begin();
+  const problems = await refused(page, () => page.evaluate(() =>
+    window.imbibe.openText('bad.wif', '[WIF]\nVersion=1.1\n[WEAVING]\nShafts=oops\nTreadles=2\n')), /./);
+  assert.ok(problems.some((p) => p.file === 'bad.wif' && p.line > 0), JSON.stringify(problems));
+  assert.match(await text(page, '#toasts'), /bad\.wif:\d+:/);
   const good = '[WIF]\nVersion=1.1\n[CONTENTS]\nWEAVING=1\nWARP=1\nWEFT=1\nTHREADING=1\nTIEUP=1\nTREADLING=1\n[WEAVING]\nShafts=2\nTreadles=2\nRising Shed=true\n' +
     '[WARP]\nThreads=4\n[WEFT]\nThreads=4\n[THREADING]\n1=1\n2=1\n3=2\n4=2\n[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1\n2=1\n3=2\n4=2\n';
-  await page.evaluate((text) => window.imbibe.openText('basket.wif', text), good);
+  await page.evaluate((draft) => {
+    const data = new DataTransfer();
+    data.items.add(new File([draft], 'basket.wif'));
+    document.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, good);
   await until(page, () => document.querySelector('#title').textContent === 'basket.wif' || window.imbibe.counters.problems.some((p) => p.file === 'basket.wif'));
-  assert.equal(await page.textContent('#title'), 'basket.wif', JSON.stringify(await page.evaluate(() => window.imbibe.counters.problems)));
+  assert.equal(await text(page, '#title'), 'basket.wif', JSON.stringify(await page.evaluate(() => window.imbibe.counters.problems)));
 });
 
-test('a scene from the page may not name files of the server', async () => {
-  const text = readFileSync(join(root, small), 'utf8').replace('    size:', '    weave: /etc/secret.wif\n    size:');
-  const errors = await page.evaluate(() => window.imbibe.counters.errors);
-  await page.evaluate((t) => window.imbibe.openText('evil.yaml', t), text);
-  await until(page, (n) => window.imbibe.counters.errors > n, errors);
-  assert.match(await page.evaluate(() => window.imbibe.counters.problems[0].message), /may not name files/);
+test('a bad scene shows line and column, and a scene from the page may not name files of the server', async () => {
+  await begin();
+  const wrong = smallText.replace('duration: 1 s', 'duratoin: 1 s').replace('3 uL', '3 parsec');
+  const problems = await refused(page, () => page.evaluate((t) => window.imbibe.openText('wrong.yaml', t), wrong), /duration/);
+  assert.ok(problems.every((p) => p.file === 'wrong.yaml' && p.line > 0 && p.column > 0), JSON.stringify(problems));
+  assert.ok(problems.length >= 2, 'all problems at once');
+  const evil = smallText.replace('    size:', '    weave: /etc/secret.wif\n    size:');
+  await refused(page, () => page.evaluate((t) => window.imbibe.openText('evil.yaml', t), evil), /may not name files/);
 });
 
-test('1000 malformed messages are survived', async () => {
-  const errors = await page.evaluate(() => window.imbibe.counters.errors);
-  await page.evaluate(() => {
-    const rubbish = ['', '{', '[]', '{}', '{"type":7}', '{"type":"set"}', '{"type":"set","assign":[1]}', '{"type":"drop","at":[1e999,0,0]}',
-      '{"type":"' + 'x'.repeat(5000) + '"}', '['.repeat(2000), '{"type":"seek","time":"now"}', '\u0000', '{"type":"open","gallery":"../../etc/passwd"}'];
-    for (let i = 0; i < 1000; ++i) window.imbibe.sendRaw(rubbish[i % rubbish.length]);
-  });
-  await until(page, (n) => window.imbibe.counters.errors >= n + 1000, errors);
-  const steps = await value(page, 'steps');
-  await send(page, { type: 'step', swatch: 0 });
-  await reaches(page, 'steps', steps + 1);
+test('a scene of the gallery is begun from its dialog', async () => {
+  await begin();
+  await page.keyboard.press('g');
+  assert.ok((await page.locator('.gallery button').count()) > 10);
+  const generation = await page.evaluate(() => window.imbibe.swatches[0].generation);
+  await page.click('.gallery button[value="seed_a/fig03_a"]');
+  await until(page, (g) => window.imbibe.swatches[0].generation > g && window.imbibe.swatches[0].frames > 0, generation);
+  assert.ok(await page.evaluate(() => window.imbibe.swatches[0].message.textiles.length > 0));
+});
+
+test('curves and scene are saved as files, the scene as changed', async () => {
+  await begin();
+  await set(page, 'textiles[0].contact_angle=70 deg');
+  await steps(page, 5);
+  const csv = (await saved(page, () => page.click('#csv'))).bytes.toString().trim().split('\n');
+  assert.ok(csv[0].startsWith('time_s,free_kg,sorbed_kg,yarn_kg,pore_kg'), csv[0]);
+  assert.ok(csv.length > 1);
+  const scene = await saved(page, () => page.click('#save'));
+  assert.match(scene.bytes.toString(), /contact_angle: "?70 deg/);
+});
+
+test('1000 malformed messages are answered, counted and survived', async () => {
+  await begin();
+  const watcher = await Watcher.open(server.url);
+  const rubbish = ['', '{', '[]', '{}', '{"type":7}', '{"type":"set"}', '{"type":"set","assign":[1]}', '{"type":"drop","at":[1e999,0,0]}',
+    `{"type":"${'x'.repeat(5000)}"}`, '['.repeat(2000), '{"type":"seek","time":"now"}', '\u0000', '{"type":"save","ask":-1}'];
+  for (let i = 0; i < 1000; ++i) watcher.send(rubbish[i % rubbish.length]);
+  await watcher.until(() => watcher.count('error') >= 1000);
+  watcher.close();
+  await steps(page, 1);
 });
 
 test('two viewers watch, one holds the controls and may hand them over', async () => {
+  await begin();
   const second = await openPage(browser, server.url, { width: 800, height: 600 });
+  await until(second, () => window.imbibe.holder !== 0);
   assert.equal(await second.evaluate(() => window.imbibe.holder === window.imbibe.hello.viewer), false);
-  await send(second, { type: 'reset', swatch: 0 });
-  await until(second, () => window.imbibe.counters.errors > 0);
-  assert.match(await second.evaluate(() => window.imbibe.counters.problems[0].message), /controls/);
-  await send(second, { type: 'take' });
+  await refused(second, () => send(second, { type: 'reset', swatch: 0 }), /controls/);
+  await ask(second, { type: 'take' });
   await until(second, () => window.imbibe.holder === window.imbibe.hello.viewer);
   await until(page, () => window.imbibe.holder !== window.imbibe.hello.viewer);
-  const frames = await page.evaluate(() => window.imbibe.counters.frames);
-  await send(second, { type: 'step', swatch: 0, steps: 5 });
-  await until(page, (n) => window.imbibe.counters.frames > n, frames);
+  const { step } = await ask(second, { type: 'step', swatch: 0, steps: 5 });
+  await reaches(page, 'steps', step + 5);
   assert.deepEqual(second.problems, []);
   await second.close();
   await until(page, () => window.imbibe.holder === window.imbibe.hello.viewer);
 });
 
 test('two swatches are compared: same drops, neither runs ahead', async () => {
-  await page.evaluate(() => window.imbibe.send({ type: 'compare', on: true, assign: ['textiles[0].contact_angle=80 deg'] }));
+  await begin();
+  await page.keyboard.press('c');
+  await page.fill('dialog input[name="textiles[0].contact_angle"]', '60');
+  await page.click('dialog button[value=go]');
   await until(page, () => window.imbibe.swatches.length === 2 && window.imbibe.swatches[1].frames > 0);
   await reaches(page, 'time_s', 0.01, 0);
   await reaches(page, 'time_s', 0.01, 1);
-  await page.evaluate(() => window.imbibe.send({ type: 'pause', swatch: 255 }));
-  await paused(page);
+  await ask(page, { type: 'pause', swatch: 255 });
+  await until(page, () => window.imbibe.swatches.every((s) => (s.flags & 1) === 0));
+  const [left, right] = [await value(page, 'time_s', 0), await value(page, 'time_s', 1)];
+  assert.ok(Math.abs(left - right) < 0.02, `${left} s and ${right} s`);
   assert.equal(await value(page, 'supplied_kg', 0), await value(page, 'supplied_kg', 1));
-  assert.match(await page.textContent('#labels'), /left:.*right:/s);
-  await send(page, { type: 'compare', on: false });
+  assert.match(await text(page, '#labels'), /left:.*right:.*60/s);
+  await ask(page, { type: 'compare', on: false });
   await until(page, () => window.imbibe.swatches.length === 1);
 });
 
@@ -235,18 +329,21 @@ test('the page comes back when the server has been away', async () => {
   await until(page, () => window.imbibe.swatches[0]?.frames > 0 && window.imbibe.swatches[0].value('time_s') === 0);
 });
 
-test('what was done live runs again offline to the same bits', async () => {
+test('what was done live is recorded, and runs again offline to the same bits', async () => {
+  await page.click('#record');
+  await until(page, () => (window.imbibe.swatches[0].flags & 16) !== 0);
   await send(page, { type: 'run', swatch: 0 });
   await reaches(page, 'time_s', 0.006);
   await set(page, 'textiles[0].contact_angle=75 deg', 'air.humidity=30 %');
-  await send(page, { type: 'drop', swatch: 0, at: [-3e-3, 1e-3, 0.3e-3], volume: 0.6e-9, speed: 0.1 });
+  await ask(page, { type: 'drop', swatch: 0, at: [-3e-3, 1e-3, 0.3e-3], volume: 0.6e-9, speed: 0.1 });
   await reaches(page, 'time_s', 0.02);
   await set(page, 'gravity=[2 m/s2, 0 m/s2, -9.81 m/s2]', 'liquid.kind.surface_tension=40 mN/m');
   await reaches(page, 'time_s', 0.03);
   await server.stop();
   const folder = join(server.folder, 'run'), again = join(server.folder, 'again');
+  assert.ok(readdirSync(folder).filter((f) => /^liquid_\d+\.vtp$/.test(f)).length > 10, 'as `imbibe run` writes it');
   execFileSync(command, ['run', join(folder, 'scene.yaml'), '--changes', join(folder, 'changes.jsonl'), '-o', again, '--no-pictures', '--threads', '1'],
-    { env: { ...process.env, IMBIBE_DATA_DIR: root }, stdio: 'pipe' });
+    { env: environment, stdio: 'pipe' });
   const read = (f) => JSON.parse(readFileSync(join(f, 'run.json'), 'utf8'));
   assert.equal(read(again).steps, read(folder).steps);
   assert.equal(read(again).state_hash, read(folder).state_hash);
@@ -255,15 +352,17 @@ test('what was done live runs again offline to the same bits', async () => {
 
 test('a finished run is replayed: play, pause, any time', async () => {
   const again = join(server.folder, 'again');
+  assert.ok(existsSync(join(again, 'run.json')));
   const replay = await startLive(again, '--speed', '0');
   try {
-    const p = await openPage(browser, replay.url);
+    const p = await openPage(browser, replay.url, { width: 900, height: 600 });
     await reaches(p, 'time_s', 0.029);
-    await send(p, { type: 'pause' });
-    await send(p, { type: 'seek', time: 0.011 });
+    await ask(p, { type: 'pause' });
+    await ask(p, { type: 'seek', time: 0.011 });
     await until(p, () => Math.abs(window.imbibe.swatches[0].value('time_s') - 0.010) < 1e-9);
     assert.ok(await p.isVisible('#seek'));
     assert.ok(!(await p.isVisible('#panel')));
+    await refused(p, () => send(p, { type: 'set', assign: ['air.humidity=10 %'] }), /finished run/);
     assert.deepEqual(p.problems, []);
     await p.close();
   } finally {
@@ -271,14 +370,16 @@ test('a finished run is replayed: play, pause, any time', async () => {
   }
 });
 
-function ask(port, text) {
+function talk(port, request) {
   return new Promise((done) => {
     let reply = '';
-    const socket = connect(port, '127.0.0.1', () => socket.write(text));
-    socket.on('data', (data) => { reply += data.toString('latin1'); });
+    const socket = connect(port, '127.0.0.1', () => socket.write(request));
+    socket.on('data', (data) => {
+      reply += data.toString('latin1');
+      if (reply.startsWith('HTTP/1.1 101')) socket.destroy();  // speaks WebSocket from here on
+    });
     socket.on('close', () => done(reply));
     socket.on('error', () => done(reply));
-    setTimeout(() => socket.destroy(), 5000).unref();
   });
 }
 
@@ -289,46 +390,41 @@ test('only pages of this server may use it, and only with the token where one is
     const upgrade = (path, host = `127.0.0.1:${port}`, origin = '') =>
       `GET ${path} HTTP/1.1\r\nHost: ${host}\r\n${origin ? `Origin: ${origin}\r\n` : ''}Upgrade: websocket\r\nConnection: Upgrade\r\n` +
       'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n';
-    assert.match(await ask(port, upgrade('/live')), /^HTTP\/1\.1 403/);
-    assert.match(await ask(port, upgrade('/live?token=wrong')), /^HTTP\/1\.1 403/);
-    assert.match(await ask(port, upgrade('/live?token=letmein', `127.0.0.1:${port}`, 'http://evil.example')), /^HTTP\/1\.1 403/);
-    assert.match(await ask(port, upgrade('/live?token=letmein')), /^HTTP\/1\.1 101[^]*s3pPLMBiTxaQ9kYGzzhZRbK\+xOo=/);
-    const get = (path, method = 'GET') => ask(port, `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`);
+    assert.match(await talk(port, upgrade('/live')), /^HTTP\/1\.1 403/);
+    assert.match(await talk(port, upgrade('/live?token=wrong')), /^HTTP\/1\.1 403/);
+    assert.match(await talk(port, upgrade('/live?token=letmein', `127.0.0.1:${port}`, 'http://evil.example')), /^HTTP\/1\.1 403/);
+    assert.match(await talk(port, upgrade('/live?token=letmein')), /^HTTP\/1\.1 101[^]*s3pPLMBiTxaQ9kYGzzhZRbK\+xOo=/);
+    const get = (path, method = 'GET') => talk(port, `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`);
     assert.match(await get('/'), /^HTTP\/1\.1 200/);
     assert.match(await get('/../../etc/passwd'), /^HTTP\/1\.1 404/);
     assert.match(await get('/%2e%2e/etc/passwd'), /^HTTP\/1\.1 404/);
     assert.match(await get('/', 'POST'), /^HTTP\/1\.1 405/);
-    assert.match(await ask(port, 'nonsense\r\n\r\n'), /^HTTP\/1\.1 400/);
-    assert.match(await ask(port, `GET /${'x'.repeat(9000)}`), /^HTTP\/1\.1 431/);
+    assert.match(await talk(port, 'nonsense\r\n\r\n'), /^HTTP\/1\.1 400/);
+    assert.match(await talk(port, `GET /${'x'.repeat(9000)}`), /^HTTP\/1\.1 431/);
+    assert.match(guarded.output(), /\?token=letmein/);
   } finally {
     await guarded.remove();
   }
   const own = await startLive(small);
   try {
-    const reply = await ask(own.port, `GET / HTTP/1.1\r\nHost: evil.example:${own.port}\r\n\r\n`);
-    assert.match(reply, /^HTTP\/1\.1 403/);
+    assert.match(await talk(own.port, `GET / HTTP/1.1\r\nHost: evil.example:${own.port}\r\n\r\n`), /^HTTP\/1\.1 403/);
   } finally {
     await own.remove();
   }
 });
 
-test('twenty viewers all get frames', async () => {
-  const busy = await startLive(small, '--speed', '0', '--run');
+// Processor times, which other work on the machine changes little. The server may use a twentieth of a core per viewer
+// at 30 frames a second (viewer/tools/measure.mjs measures it on the scenes of the README): 1.7 ms a frame.
+test('twenty viewers all get frames, and serving them costs less than the twentieth of a core each that it may', async () => {
+  const busy = await startLive(small, '--speed', '0', '--run', '--set', 'duration=1000 s', '--set', 'output.every=1 s');
   try {
-    const p = await openPage(browser, busy.url);
-    const frames = await p.evaluate(() => new Promise((done) => {
-      const counts = new Array(20).fill(0);
-      for (let i = 0; i < 20; ++i) {
-        const socket = new WebSocket(new URL('live', location.href.replace(/^http/, 'ws')));
-        socket.binaryType = 'arraybuffer';
-        socket.onmessage = (e) => {
-          if (typeof e.data !== 'string') ++counts[i];
-          if (counts.every((n) => n >= 5)) done(counts);
-        };
-      }
-    }));
-    assert.equal(frames.length, 20);
-    await p.close();
+    const watchers = await Promise.all(Array.from({ length: 20 }, () => Watcher.open(busy.url)));
+    const before_ = processorSeconds(busy.child.pid).server;
+    await Promise.all(watchers.map((w) => w.until(() => w.frames >= 40)));
+    const frames = watchers.reduce((sum, w) => sum + w.frames, 0);
+    const each = (processorSeconds(busy.child.pid).server - before_) / frames;
+    assert.ok(each < 0.05 / 30, `${1e3 * each} ms a frame`);
+    watchers.forEach((w) => w.close());
   } finally {
     await busy.remove();
   }
@@ -336,5 +432,5 @@ test('twenty viewers all get frames', async () => {
 
 test('the page wrote no error to the console', () => {
   // A server that goes away is told by the browser itself.
-  assert.deepEqual(page.problems.filter((text) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(text)), []);
+  assert.deepEqual(page.problems.filter((line) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(line)), []);
 });

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "imbibe/geometry/mesh_distance.h"
+#include "imbibe/geometry/triangle_mesh.h"
 #include "imbibe/live/controls.h"
 #include "imbibe/sim/measures.h"
 
@@ -35,6 +36,11 @@ const std::vector<std::string>& live_columns() {
   return names;
 }
 
+QuantisedPoints cloth_points(const CellCloth& cloth) {
+  const auto& nodes = cloth.soft.sheet.position;
+  return quantise(nodes.size(), [&](std::size_t i) { return nodes[i]; });
+}
+
 std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more) {
   std::vector<double> values = series_values(row);
   values.insert(values.end(), {more.wet_height_m, more.speed, static_cast<double>(more.step_bound), more.converged ? 1.0 : 0.0});
@@ -55,6 +61,22 @@ Real wet_height(const World& world, const std::vector<std::vector<Real>>& satura
   return high > low ? high - low : 0;
 }
 
+namespace {
+
+// What a cloth of cells holds and where its nodes are; what has not changed is shared with the snapshot before.
+void add_cloth(const CellCloth& cloth, std::size_t owner, const Snapshot* before, Snapshot& s) {
+  const std::vector<float> saturation = node_saturation(cloth);
+  auto bytes = std::make_shared<Saturations>(saturation.size());
+  std::transform(saturation.begin(), saturation.end(), bytes->begin(), saturation_byte);
+  const bool known = before && owner < before->saturations.size();
+  const bool same = known && *before->saturations[owner] == *bytes;
+  s.saturations.push_back(same ? before->saturations[owner] : std::move(bytes));
+  const bool still = known && before->yarns[owner] && !cloth.soft.moves();
+  s.yarns.push_back(still ? before->yarns[owner] : std::make_shared<const QuantisedPoints>(cloth_points(cloth)));
+}
+
+}  // namespace
+
 Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>& saturations, const Snapshot* before) {
   Snapshot s;
   const auto& positions = world.liquid.particles.position;
@@ -69,6 +91,7 @@ Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>&
     const bool same = before && t < before->saturations.size() && *before->saturations[t] == *bytes;
     s.saturations.push_back(same ? before->saturations[t] : std::move(bytes));
   }
+  for (std::size_t c = 0; c < world.cell_cloths.size(); ++c) add_cloth(world.cell_cloths[c], world.textiles.size() + c, before, s);
   return s;
 }
 
@@ -138,16 +161,29 @@ QuantisedPoints shown_points(const Textile& textile) {
   return quantise(points.size(), [&](std::size_t i) { return points[i]; });
 }
 
-void add_mesh(const SolidBody& solid, Geometry& geometry) {
+// `mesh` null: a plain shape, described in the scene message.
+void add_mesh(const TriangleMesh* mesh, Geometry& geometry) {
   std::vector<float> vertices;
   std::vector<std::uint32_t> triangles;
-  if (const auto* mesh = std::get_if<MeshShape>(&solid.shape)) {
-    for (const auto& p : (*mesh)->mesh().vertices)
-      vertices.insert(vertices.end(), {float(p.x), float(p.y), float(p.z)});
-    for (const auto& t : (*mesh)->mesh().triangles) triangles.insert(triangles.end(), {t[0], t[1], t[2]});
+  if (mesh) {
+    for (const auto& p : mesh->vertices) vertices.insert(vertices.end(), {float(p.x), float(p.y), float(p.z)});
+    for (const auto& t : mesh->triangles) triangles.insert(triangles.end(), {t[0], t[1], t[2]});
   }
   geometry.mesh_vertices.push_back(std::move(vertices));
   geometry.mesh_triangles.push_back(std::move(triangles));
+}
+
+const TriangleMesh* mesh_of(const SolidBody& solid) {
+  const auto* shape = std::get_if<MeshShape>(&solid.shape);
+  return shape ? &(*shape)->mesh() : nullptr;
+}
+
+Json cloth_json(const CellCloth& cloth) {
+  return {{"name", cloth.name}, {"colour", colour_json(cloth.colour)}, {"nodes", cloth.soft.sheet.size()}};
+}
+
+Json prop_json(const Prop& prop) {
+  return {{"name", prop.name}, {"colour", colour_json(prop.colour)}, {"contact_angle", 0}, {"form", "mesh"}};
 }
 
 }  // namespace
@@ -156,7 +192,7 @@ Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World
                        const SceneTexts& texts) {
   Geometry g;
   g.generation = generation;
-  Json textiles = Json::array(), solids = Json::array();
+  Json textiles = Json::array(), cloths = Json::array(), solids = Json::array();
   for (const Textile& textile : world.textiles) {
     textiles.push_back(textile_json(textile));
     g.yarns.push_back(shown_points(textile));
@@ -165,7 +201,17 @@ Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World
       return textile.placement.to_world(network.pore_centre[i]);
     }));
   }
-  for (const SolidBody& solid : world.solids) solids.push_back(solid_json(solid)), add_mesh(solid, g);
+  for (const CellCloth& cloth : world.cell_cloths) {
+    cloths.push_back(cloth_json(cloth));
+    g.cloth_nodes.push_back(cloth_points(cloth));
+    std::vector<std::uint32_t>& triangles = g.cloth_triangles.emplace_back();
+    const Sheet& sheet = cloth.soft.sheet;
+    for (const auto& t : sheet.triangles) triangles.insert(triangles.end(), {t[0], t[1], t[2]});
+    std::vector<float>& uv = g.cloth_uv.emplace_back();
+    for (std::size_t i = 0; i < sheet.size(); ++i) uv.insert(uv.end(), {float(sheet.u[i]), float(sheet.v[i])});
+  }
+  for (const SolidBody& solid : world.solids) solids.push_back(solid_json(solid)), add_mesh(mesh_of(solid), g);
+  for (const Prop& prop : world.props) solids.push_back(prop_json(prop)), add_mesh(&prop.mesh, g);
   const Json json{{"type", "scene"},
                   {"swatch", texts.swatch},
                   {"generation", generation},
@@ -179,6 +225,7 @@ Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World
                               {"particle_mass", world.liquid.particle_mass},
                               {"density", world.liquid.kind.density}}},
                   {"textiles", textiles},
+                  {"cloths", cloths},
                   {"solids", solids},
                   {"controls", Json::parse(texts.replay ? "[]" : controls_json(scene, world, library))},
                   {"history", Json::parse(texts.history_json)}};
@@ -186,8 +233,26 @@ Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World
   return g;
 }
 
+namespace {
+
+std::string inspect_cloth(const CellCloth& cloth, std::size_t owner, std::size_t node) {
+  const std::vector<float> saturation = node_saturation(cloth);
+  if (node >= saturation.size()) return "";
+  const Sheet& sheet = cloth.soft.sheet;
+  const Real dry = sheet.dry_mass[node], held = sheet.added_mass[node];
+  return Json{{"type", "inspect"},        {"textile", owner},        {"node", node},
+              {"name", cloth.name},       {"kind", "cell"},          {"place", vector_json(sheet.position[node])},
+              {"saturation", saturation[node]}, {"liquid_kg", held}, {"dry_kg", dry},
+              {"speed", norm(sheet.velocity[node])}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
 std::string inspect(const World& world, std::size_t textile_index, std::size_t node) {
-  if (textile_index >= world.textiles.size()) return "";
+  const std::size_t cloth = textile_index - world.textiles.size();
+  if (textile_index >= world.textiles.size())
+    return cloth < world.cell_cloths.size() ? inspect_cloth(world.cell_cloths[cloth], textile_index, node) : "";
   const Textile& textile = world.textiles[textile_index];
   const WettingModel& model = *textile.model;
   const YarnNetwork& network = textile.fabric->network;

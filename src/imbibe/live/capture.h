@@ -30,6 +30,8 @@ std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more);
 // Vertical extent of all wet nodes, m.
 Real wet_height(const World& world, const std::vector<std::vector<Real>>& saturations, Real wet_saturation);
 
+QuantisedPoints cloth_points(const CellCloth& cloth);
+
 // `before`: the snapshot made last; what has not changed is shared with it. Positions of resting liquid are not looked
 // at again.
 Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>& saturations, const Snapshot* before);

@@ -70,5 +70,7 @@ class Feed {
 std::string error_event(int swatch, const std::string& about, const std::vector<Problem>& problems);
 std::string error_event(int swatch, const std::string& about, const std::string& message);
 std::string notice_event(int swatch, const std::string& message);
+// The message that asked with this number was carried out, or refused by an error told before, at this step.
+std::string done_event(int swatch, double ask, std::uint64_t step, Real time);
 
 }  // namespace imbibe::live

@@ -119,6 +119,12 @@ std::string encode_geometry(std::uint8_t swatch, const Geometry& g) {
   FrameWriter frame(swatch, 1, g.generation, 0, 0, {});
   for (std::size_t t = 0; t < g.yarns.size(); ++t) frame.points(4, t, g.yarns[t]);
   for (std::size_t t = 0; t < g.pores.size(); ++t) frame.points(5, t, g.pores[t]);
+  for (std::size_t c = 0; c < g.cloth_nodes.size(); ++c) {
+    frame.points(4, g.yarns.size() + c, g.cloth_nodes[c]);
+    frame.section(8, g.yarns.size() + c, g.cloth_triangles[c].size() / 3,
+                  [&](std::string& out) { put_all(out, g.cloth_triangles[c]); });
+    frame.section(9, g.yarns.size() + c, g.cloth_uv[c].size() / 2, [&](std::string& out) { put_all(out, g.cloth_uv[c]); });
+  }
   for (std::size_t i = 0; i < g.mesh_vertices.size(); ++i) {
     if (g.mesh_vertices[i].empty()) continue;
     frame.section(6, i, g.mesh_vertices[i].size() / 3, [&](std::string& out) { put_all(out, g.mesh_vertices[i]); });
@@ -228,6 +234,7 @@ Message parse_message(std::string_view text) {
   const Real swatch = get.number("swatch", 0, both_swatches, 0, false);
   if (swatch != 0 && swatch != 1 && swatch != both_swatches) m.problem = "'swatch' wants 0, 1 or 255 (both)";
   m.swatch = static_cast<std::uint8_t>(swatch);
+  m.ask = get.number("ask", 0, 9007199254740991.0, 0, false);
   if (!m.problem.empty()) return m;
   if (type == "set") m.body = SetMessage{get.texts("assign", true), get.flag("restart", false)};
   else if (type == "run") m.body = RunMessage{};

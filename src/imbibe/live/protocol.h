@@ -2,6 +2,8 @@
 //
 // Server to page: JSON text for what happens seldom (hello, scene, changed, error, ...), one binary form for frames:
 //
+// An owner is a solid (props after the solids) in sections 6 and 7, else a textile, or a cloth of cells after them.
+//
 //   offset  type        meaning (little-endian)
 //   0       u32         "IMBF"
 //   4       u16 u8 u8   version, swatch (0 or 1), kind: 0 a frame, 1 the geometry of a scene message
@@ -17,10 +19,12 @@
 //   1     particles   f32[3] origin, f32[3] step, u16[3] each: position = origin + step * value (m)
 //   2     nodes       u8 each: saturation * saturation_scale, of all nodes
 //   3     changes     of those that changed since the last frame to this viewer: LEB128 gap to the node before, then u8
-//   4     points      yarns' centre-line points, as particles
+//   4     points      yarns' centre-line points, or nodes of a cloth, as particles
 //   5     points      pores, as particles
 //   6     vertices    f32[3] each: mesh of a solid
 //   7     triangles   u32[3] each
+//   8     triangles   u32[3] each: of a cloth
+//   9     nodes       f32[2] each: where they lie in the flat cloth, m along weft and warp
 //
 // A frame without section 1 leaves the particles as they are; with it and no items there are none.
 //
@@ -95,6 +99,7 @@ struct Message {
                RateMessage>
       body;
   std::string problem;  // what is wrong with it; "" = nothing
+  double ask = 0;       // not 0: to be answered with this number once carried out
   // Whether only the viewer that holds the controls may send it.
   bool needs_controls() const;
 };

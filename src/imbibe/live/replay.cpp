@@ -117,6 +117,13 @@ void Replay::show(std::size_t number) {
     s->saturations.push_back(std::move(bytes));
     s->yarns.push_back(nullptr);
   }
+  for (const DrawnCloth& cloth : frame.cloths) {
+    auto bytes = std::make_shared<Saturations>(cloth.saturation.size());
+    std::transform(cloth.saturation.begin(), cloth.saturation.end(), bytes->begin(), saturation_byte);
+    s->saturations.push_back(std::move(bytes));
+    const auto& nodes = cloth.mesh.vertices;
+    s->yarns.push_back(std::make_shared<const QuantisedPoints>(quantise(nodes.size(), [&](std::size_t i) { return nodes[i]; })));
+  }
   frame_ = number;
   shown_at_ = Clock::now();
   last_ = std::move(s);
@@ -171,7 +178,11 @@ void Replay::thread() {
     }
     try {
       bool again = false;
-      for (const Command& command : todo) again = handle(command) || again;
+      for (const Command& command : todo) {
+        again = handle(command) || again;
+        if (command.message.ask != 0)
+          outlet.tell(command.viewer, done_event(0, command.message.ask, frame_, frames_.times[frame_]));
+      }
       if (again) {
         show(frame_);
       } else if (todo.empty() && playing_ && frame_ < last) {

@@ -226,13 +226,17 @@ void Server::take_message(Connection& c, const std::string& text) {
     ++counts_.malformed;
     return send(c, Opcode::text, error_event(message.swatch, "message", message.problem));
   }
+  const auto done = [&] {
+    if (message.ask != 0) send(c, Opcode::text, done_event(message.swatch, message.ask, 0, 0));
+  };
   if (const auto* rate = std::get_if<RateMessage>(&message.body)) {
     c.frame_interval = 1 / std::min(rate->frames_per_second, options_.frames_per_second);
-    return;
+    return done();
   }
   if (std::holds_alternative<TakeMessage>(message.body)) {
     holder_ = c.viewer;
-    return tell_controls();
+    tell_controls();
+    return done();
   }
   if (message.needs_controls() && c.viewer != holder_)
     return send(c, Opcode::text, error_event(message.swatch, "controls", "another viewer holds the controls; take them first"));
@@ -243,7 +247,7 @@ void Server::take_message(Connection& c, const std::string& text) {
       for (const auto& other : connections_)
         if (other->viewer != 0 && (event.viewer == all_viewers || event.viewer == other->viewer))
           send(*other, Opcode::text, event.json);
-    return;
+    return done();
   }
   if (message.swatch != both_swatches && message.swatch >= feeds_.size())
     return send(c, Opcode::text, error_event(message.swatch, "message", "there is no second swatch"));

@@ -56,7 +56,7 @@ void Session::post(Command command) {
       auto* last = std::get_if<SetMessage>(&commands_.back().message.body);
       const auto path = [](const SetMessage& m) { return m.assignments[0].substr(0, m.assignments[0].find('=')); };
       if (last && !last->restart && !now->restart && last->assignments.size() == 1 && now->assignments.size() == 1 &&
-          commands_.back().viewer == command.viewer && path(*last) == path(*now))
+          commands_.back().viewer == command.viewer && commands_.back().message.ask == 0 && path(*last) == path(*now))
         commands_.pop_back();
     }
     commands_.push_back(std::move(command));
@@ -233,7 +233,10 @@ bool Session::between_steps(World& world, Real& until) {
       if (quit_asked_) quit_ = stop_ = true;
     }
     while (!todo.empty() && !stop_) {
-      changed = handle(todo.front()) || changed;
+      const Command& command = todo.front();
+      changed = handle(command) || changed;
+      if (command.message.ask != 0)
+        outlet.tell(command.viewer, done_event(setup_.swatch, command.message.ask, world_.step, world_.time));
       todo.pop_front();
     }
     if (stop_) {  // what else was asked is for the world to come

@@ -55,8 +55,9 @@ struct Snapshot {
   std::uint16_t flags = 0;        // see protocol.h
   std::vector<double> values;     // as the columns of the hello message
   std::shared_ptr<const QuantisedPoints> particles;              // kept while the liquid rests
-  std::vector<std::shared_ptr<const Saturations>> saturations;   // per textile
-  std::vector<std::shared_ptr<const QuantisedPoints>> yarns;     // per textile; null: it does not move
+  // Per textile, then per cloth of cells: what its nodes hold, and where its yarns' points or its nodes are.
+  std::vector<std::shared_ptr<const Saturations>> saturations;
+  std::vector<std::shared_ptr<const QuantisedPoints>> yarns;     // null: it does not move
 };
 
 // What does not change while one world runs.
@@ -64,7 +65,10 @@ struct Geometry {
   std::uint32_t generation = 0;
   std::string scene_json;                          // the scene message
   std::vector<QuantisedPoints> yarns, pores;       // per textile: centre lines of all yarns; pores
-  std::vector<std::vector<float>> mesh_vertices;   // per solid, three per vertex; empty for plain shapes
+  std::vector<QuantisedPoints> cloth_nodes;        // per cloth of cells
+  std::vector<std::vector<std::uint32_t>> cloth_triangles;
+  std::vector<std::vector<float>> cloth_uv;        // m, two per node: where it lies in the flat cloth
+  std::vector<std::vector<float>> mesh_vertices;   // per solid, then per prop: three per vertex; empty for plain shapes
   std::vector<std::vector<std::uint32_t>> mesh_triangles;
 };
 
