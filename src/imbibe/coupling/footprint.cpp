@@ -1,23 +1,10 @@
 #include "imbibe/coupling/footprint.h"
 
-#include <numeric>
-
 #include "imbibe/core/portable.h"
+#include "imbibe/core/union_find.h"
 
 namespace imbibe {
 namespace {
-
-// Smallest member of the set that i belongs to; paths are halved on the way.
-Index root_of(std::vector<Index>& parent, Index i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-void unite(std::vector<Index>& parent, Index a, Index b) {
-  a = root_of(parent, a), b = root_of(parent, b);
-  if (a < b) parent[b] = a;
-  else parent[a] = b;
-}
 
 void clear(Footprint& f, std::size_t nodes) {
   for (const FaceSupply& supply : f.supplies) f.supply_of_node[supply.node] = no_index;
@@ -50,8 +37,8 @@ void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Re
 
 // Joins particles through their common nodes and numbers the patches.
 void find_patches(const Liquid& liquid, Real particle_area, Footprint& f) {
-  std::vector<Index> parent(f.particle.size()), owner(f.supplies.size(), no_index);
-  std::iota(parent.begin(), parent.end(), Index{0});
+  std::vector<Index> parent, owner(f.supplies.size(), no_index);
+  separate_all(parent, f.particle.size());
   for (Index p = 0; p < f.particle.size(); ++p)
     for (Index l = f.first_link[p]; l < f.first_link[p + 1]; ++l) {
       Index& first = owner[f.supply_of_node[f.links[l].node]];

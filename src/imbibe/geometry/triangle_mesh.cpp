@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "imbibe/core/portable.h"
+#include "imbibe/core/union_find.h"
 
 namespace imbibe {
 namespace {
@@ -21,20 +21,15 @@ struct Side {
 
 // Sides whose ends join are one loop: union-find over the vertices of the open sides.
 std::size_t count_loops(const std::vector<Side>& open, std::size_t vertices) {
-  std::vector<Index> parent(vertices);
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  std::vector<Index> parent;
+  separate_all(parent, vertices);
   std::size_t loops = 0;
   std::vector<bool> seen(vertices);
   for (const Side& side : open) {
     for (const Index v : {side.low, side.high}) {
       if (!seen[v]) seen[v] = true, ++loops;
     }
-    const Index a = root(side.low), b = root(side.high);
-    if (a != b) parent[b] = a, --loops;
+    if (unite(parent, side.low, side.high)) --loops;
   }
   return loops;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "imbibe/core/union_find.h"
 #include "imbibe/liquid/classes.h"
 #include "imbibe/liquid/tangent_fit.h"
 
@@ -256,19 +257,13 @@ void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
 }
 
 // Drops are the connected parts of S; root[i] is the smallest index of i's part.
-Index root_of(std::vector<Index>& root, Index i) {
-  while (root[i] != i) i = root[i] = root[root[i]];
-  return i;
-}
-
 void find_drops(const Stage& t) {
   std::vector<Index>& root = t.s.root;
   for (std::size_t i = 0; i < t.f.count; ++i) root[i] = static_cast<Index>(i);
   for (std::size_t i = 0; i < t.f.count; ++i) {
     if (!t.f.surface[i]) continue;
     each_neighbour(t.f, i, [&](Index j) { return j < i && t.f.surface[j] != 0; }, [&](Index j, const Vec3f&) {
-      const Index a = root_of(root, static_cast<Index>(i)), b = root_of(root, j);
-      root[std::max(a, b)] = std::min(a, b);
+      unite(root, static_cast<Index>(i), j);
     });
   }
 }

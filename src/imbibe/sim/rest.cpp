@@ -1,9 +1,8 @@
 #include "imbibe/sim/rest.h"
 
-#include <numeric>
-
 #include "imbibe/core/parallel.h"
 #include "imbibe/core/portable.h"
+#include "imbibe/core/union_find.h"
 
 namespace imbibe {
 namespace {
@@ -42,11 +41,6 @@ Real radius_of_drop(const Liquid& liquid, Real particles) {
   return portable::cbrt(3 * particles * liquid.particle_mass / (4 * pi * liquid.kind.density));
 }
 
-Index root_of(std::vector<Index>& parent, Index i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 // Whether each blob stays where it is, as far as one instant tells.
 bool blobs_rest(const World& world, const LiquidFields& fields, Real waited) {
   const Liquid& liquid = world.liquid;
@@ -67,8 +61,8 @@ bool blobs_rest(const World& world, const LiquidFields& fields, Real waited) {
 }  // namespace
 
 std::vector<Blob> find_blobs(const LiquidFields& f, const Particles& particles) {
-  std::vector<Index> parent(f.count);
-  std::iota(parent.begin(), parent.end(), Index{0});
+  std::vector<Index> parent;
+  separate_all(parent, f.count);
   const float reach = connected_spacings * f.spacing;
   for (std::size_t first = 0; first < f.count; first += simd::lanes) {
     const Slice slice = f.neighbours.slice(first);
@@ -79,8 +73,7 @@ std::vector<Blob> find_blobs(const LiquidFields& f, const Particles& particles) 
         const Float4 &a = f.position[i], &b = f.position[j];
         const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
         if (x * x + y * y + z * z > reach * reach) continue;
-        const Index one = root_of(parent, i), other = root_of(parent, j);
-        parent[std::max(one, other)] = std::min(one, other);
+        unite(parent, i, j);
       }
   }
   std::vector<Blob> blobs;

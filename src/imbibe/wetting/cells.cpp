@@ -6,6 +6,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
 #include "imbibe/core/portable.h"
+#include "imbibe/core/union_find.h"
 
 namespace imbibe {
 namespace {
@@ -105,16 +106,11 @@ struct Mover {
   }
 };
 
-Index root_of(std::vector<Index>& parent, Index i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 // For each cell the lowest cell that wet cells connect it with; itself where it is dry.
 std::vector<Index> lowest_reached(const CellGrid& grid, std::span<const Real> saturation, Real wet,
                                   std::span<const Real> height) {
-  std::vector<Index> parent(grid.cells());
-  std::iota(parent.begin(), parent.end(), Index{0});
+  std::vector<Index> parent;
+  separate_all(parent, grid.cells());
   const auto lower = [&](Index a, Index b) {
     return height.empty() || height[a] == height[b] ? a < b : height[a] < height[b];
   };
