@@ -180,5 +180,34 @@ TEST(SelfContact, the_same_bits_for_any_number_of_threads_and_with_a_new_scratch
   EXPECT_EQ(one, run(1, true));
 }
 
+TEST(SelfContact, a_push_of_the_liquid_cannot_take_one_layer_through_the_other) {
+  // The middle of a fold's upper half is pushed down as far as it lies above the lower one, and as far again.
+  Sheet sheet = thrown_fold(0);
+  const Real dt = 1e-3, way = 0.06;
+  std::vector<Real> inverse_mass(sheet.size());
+  std::vector<Vec3> impulse(sheet.size());
+  Vec3 given{};
+  for (std::size_t i = 0; i < sheet.size(); ++i) {
+    inverse_mass[i] = i % 31 == 0 ? 0 : 1 / sheet.mass(i);  // the edge of the lower half is held
+    if (sheet.position[i].z > 0.02 && std::abs(sheet.v[i] - 0.15) < 0.05) impulse[i] = {0, 0, -sheet.mass(i) * way / dt};
+    given += impulse[i];
+  }
+  const ClothParams params = shirt();
+  ClothParams blind = params;
+  blind.contact.self = false;
+  ClothScratch scratch, other;
+  Sheet through = sheet;
+  push_cloth(through, blind, inverse_mass, impulse, dt, other);
+  EXPECT_GT(count_self_crossings(through), 0u);  // else the test shows nothing
+  const std::vector<Vec3> before = sheet.position;
+  const PushReport report = push_cloth(sheet, params, inverse_mass, impulse, dt, scratch);
+  EXPECT_GT(report.swept_hits, 0u);
+  EXPECT_EQ(report.unresolved_crossings, 0u);
+  EXPECT_EQ(count_self_crossings(sheet), 0u);
+  EXPECT_LT(norm(momentum(sheet) - given - report.pin_impulse), 1e-12 * norm(given));  // rounding
+  for (std::size_t i = 0; i < sheet.size(); ++i)
+    EXPECT_LT(norm(sheet.position[i] - before[i] - dt * sheet.velocity[i]), 1e-15);  // it went where the velocity says
+}
+
 }  // namespace
 }  // namespace imbibe

@@ -64,7 +64,7 @@ TEST(CellCloth, ParcelsThatMoveTakeTheirMomentumAlong) {
   CellCloth cloth = hanging_cloth();
   SoftSheetScratch scratch;
   Sheet& sheet = cloth.soft.sheet;
-  find_held(sheet, scratch.held);
+  find_held(cloth.soft, scratch.held);
   set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   for (int k = 0; k < 400; ++k) {
     const RandomCounter id{1, static_cast<std::uint64_t>(k), 0};
@@ -85,7 +85,7 @@ TEST(CellCloth, WhatLeaksIsBornBelowTheLowestCellThatIsWet) {
   CellCloth cloth = hanging_cloth();
   SoftSheetScratch scratch;
   Sheet& sheet = cloth.soft.sheet;
-  find_held(sheet, scratch.held);
+  find_held(cloth.soft, scratch.held);
   set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   cloth.params.absorption_factor = 0, cloth.params.resistance = 1e8;
   const Real capacity = cloth.grid->capacity(11 * 5 + 5);
@@ -115,7 +115,7 @@ TEST(CellCloth, LiquidThatLiesOnItIsTakenInAndWhatHangsUnderItIsNot) {
   fit_cells(cloth);
   SoftSheetScratch scratch;
   const Sheet& sheet = cloth.soft.sheet;
-  find_held(sheet, scratch.held);
+  find_held(cloth.soft, scratch.held);
   set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   Liquid water = liquid();
   const Real dx = water.spacing();
@@ -141,7 +141,7 @@ TEST(CellCloth, AFullCellBouncesUnlessToldOtherwise) {
     add_parcel(*cloth.grid, cloth.contents, 0.1, 0.1, cloth.grid->capacity(cell));
     SoftSheetScratch scratch;
     const Sheet& sheet = cloth.soft.sheet;
-    find_held(sheet, scratch.held);
+    find_held(cloth.soft, scratch.held);
     set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
     Liquid water = liquid();
     add_particle(water, {0.1, 0.101, -0.01}, {0, 0, -2});
@@ -172,6 +172,35 @@ TEST(CellCloth, CellsOfAFreeFormSheetCoverIt) {
   for (const Real a : cloth.grid->area) area += a;
   for (const Real a : node_areas(cloth.soft.sheet)) expected += a;
   EXPECT_NEAR(area, expected, 1e-12);
+}
+
+TEST(CellCloth, WhatLeaksIsBornInNoSolidAndOnNoOtherParticle) {
+  CellCloth cloth = hanging_cloth();
+  SoftSheetScratch scratch;
+  Sheet& sheet = cloth.soft.sheet;
+  find_held(cloth.soft, scratch.held);
+  set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+  Liquid water = liquid();
+  const Real dx = water.spacing();
+  cloth.waiting_kg[5] = 40 * water.particle_mass;
+  weigh(cloth);
+  CellExchangeReport report;
+  step_cell_cloth(cloth, scratch, water, Air{}, {0, 0, -9.81}, 1e-3, report, [](const Vec3&) { return true; });
+  EXPECT_EQ(water.particles.size(), 0u);
+  EXPECT_NEAR(waiting_kg(cloth), 40 * water.particle_mass, 1e-12 * water.particle_mass);
+  // A solid on one side of the hem.
+  const auto solid = [](const Vec3& place) { return place.y > 0; };
+  for (int k = 0; k < 3; ++k) step_cell_cloth(cloth, scratch, water, Air{}, {0, 0, -9.81}, 1e-3, report, solid);
+  EXPECT_GT(water.particles.size(), 3u);
+  EXPECT_NEAR(waiting_kg(cloth) + water.mass(), 40 * water.particle_mass, 1e-12 * water.particle_mass);
+  for (std::size_t i = 0; i < water.particles.size(); ++i) {
+    const Float4& a = water.particles.position[i];
+    EXPECT_LE(a.y, 0);
+    for (std::size_t j = 0; j < i; ++j) {
+      const Float4& b = water.particles.position[j];
+      EXPECT_GE(norm(Vec3{a.x - b.x, a.y - b.y, a.z - b.z}), 0.8 * dx * (1 - 1e-6));  // places in single precision
+    }
+  }
 }
 
 }  // namespace

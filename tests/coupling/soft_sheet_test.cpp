@@ -57,7 +57,7 @@ struct Shower {
     Sheet& sheet = cloth.soft.sheet;
     for (std::size_t n = 0; n < sheet.size(); ++n)
       sheet.velocity[n] = {0.1, 0, 0.5 * std::sin(9.0 * sheet.u[n]) * std::cos(7.0 * sheet.v[n])};
-    find_held(sheet, scratch.held);
+    find_held(cloth.soft, scratch.held);
     for (std::size_t n = 0; n < sheet.size(); ++n)
       if (scratch.held[n]) sheet.velocity[n] = {};
   }
@@ -126,7 +126,7 @@ TEST(SoftSheet, WithoutScatterAHeldSheetMirrorsAsSeedBWritesIt) {
 TEST(SoftSheet, AnAbsorbedParticleSharesItsMomentumWithItsNode) {
   SoftSheet soft = hanging();
   std::vector<std::uint8_t> held;
-  find_held(soft.sheet, held);
+  find_held(soft, held);
   const Index node = 23 * 11 + 11;
   soft.sheet.velocity[node] = {0.3, 0, 0.1};
   const Real m = soft.sheet.mass(node);
@@ -164,6 +164,57 @@ TEST(SoftSheet, InSixtyStepsOfAFlappingSheetNoParticleCrossesUncounted) {
   }
   EXPECT_EQ(crossed, 0u);
   EXPECT_GT(shower.cloth.crossings, 4000u);
+}
+
+// A sheet without weight whose corners take what a liquid gives it: the load of `newtons` down, shared by both.
+void load_step(SoftSheet& soft, SoftSheetScratch& scratch, Real newtons, Real dt) {
+  advance_sheet(soft, scratch, {}, {}, dt);
+  sheet_as_wall(soft, scratch);
+  for (const Pin& pin : soft.sheet.pins) scratch.wall.impulse[pin.node] = {0, 0, -0.5 * newtons * dt};
+  take_wall_impulse(soft, scratch, {}, dt);
+  finish_sheet(soft, scratch, dt);
+}
+
+TEST(SoftSheet, RestHoldsItAndBooksWhatItStops) {
+  SoftSheet soft = hanging();
+  SoftSheetScratch scratch;
+  soft.cloth.air.density = 0;
+  for (std::size_t n = 0; n < soft.sheet.size(); ++n) soft.sheet.velocity[n] = {1e-4, 0, 2e-4};
+  find_held(soft, scratch.held);
+  for (std::size_t n = 0; n < soft.sheet.size(); ++n)
+    if (scratch.held[n]) soft.sheet.velocity[n] = {};
+  const Vec3 start = momentum(soft.sheet);
+  for (int k = 0; k < 120 && !soft.at_rest; ++k) load_step(soft, scratch, 0, 5e-3);
+  ASSERT_TRUE(soft.at_rest);
+  EXPECT_EQ(norm(momentum(soft.sheet)), 0);
+  EXPECT_LT(norm(momentum(soft.sheet) - soft.support_impulse - start), 1e-12 * norm(start));  // rounding
+  // Held: impacts leave it where it is, and its supports get them.
+  const Vec3 taken = soft.support_impulse, impulse{0, 0, -1e-5};
+  give_impulse(soft, scratch.held, SurfacePoint{.triangle = 300, .weight = {0.2, 0.3, 0.5}}, impulse);
+  EXPECT_EQ(kinetic_energy(soft.sheet), 0);
+  EXPECT_LT(norm(soft.support_impulse - taken + impulse), 1e-20);
+}
+
+TEST(SoftSheet, ItRestsUnderASteadyLoadAndWakesWhenTheLoadChanges) {
+  SoftSheet soft = hanging();
+  SoftSheetScratch scratch;
+  soft.cloth.air.density = 0;
+  const Real load = 0.05;  // N, an eighth of its weight on earth
+  for (int k = 0; k < 200; ++k) load_step(soft, scratch, load, 5e-3);
+  ASSERT_TRUE(soft.at_rest);
+  for (int k = 0; k < 400; ++k) load_step(soft, scratch, load * (1 + 1e-3 * (k % 3 - 1)), 5e-3);  // the pressure flickers
+  EXPECT_TRUE(soft.at_rest);
+  for (int k = 0; k < 20 && soft.at_rest; ++k) load_step(soft, scratch, 1.5 * load, 5e-3);
+  EXPECT_FALSE(soft.at_rest);
+}
+
+TEST(SoftSheet, TheWeightOfARestingSheetIsItsSupports) {
+  SoftSheet soft = hanging();
+  SoftSheetScratch scratch;
+  soft.at_rest = true;
+  const Vec3 gravity{0, 0, -1.6};
+  for (int k = 0; k < 10; ++k) advance_sheet(soft, scratch, gravity, {}, 5e-3);
+  EXPECT_LT(norm(soft.support_impulse + (0.05 * total_mass(soft.sheet)) * gravity), 1e-15);
 }
 
 }  // namespace

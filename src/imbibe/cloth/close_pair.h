@@ -51,19 +51,6 @@ inline std::array<Real, 2> nearest_on_segments(const Vec3& a, const Vec3& u, con
   return {s, t};
 }
 
-// Barycentric coordinates of a point of the triangle's plane.
-inline std::array<Real, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, n = cross(ab, ac);
-  const Real nn = squared_norm(n);
-  if (!(nn > 0)) {
-    const Real la = squared_norm(p - a), lb = squared_norm(p - b), lc = squared_norm(p - c);
-    if (la <= lb && la <= lc) return {1, 0, 0};
-    return lb <= lc ? std::array<Real, 3>{0, 1, 0} : std::array<Real, 3>{0, 0, 1};
-  }
-  const Real v = dot(cross(ap, ac), n) / nn, w = dot(cross(ab, ap), n) / nn;
-  return {1 - v - w, v, w};
-}
-
 }  // namespace detail
 
 inline PairGap gap_of(PairKind kind, const std::array<Vec3, 4>& x) {
@@ -71,7 +58,7 @@ inline PairGap gap_of(PairKind kind, const std::array<Vec3, 4>& x) {
   Vec3 away;
   if (kind == PairKind::node_triangle) {
     const Vec3 point = closest_on_triangle(x[0], x[1], x[2], x[3]).point;
-    const auto b = detail::barycentric(point, x[1], x[2], x[3]);
+    const auto b = barycentric(point, x[1], x[2], x[3]);
     gap.weight = {1, -b[0], -b[1], -b[2]};
     away = x[0] - point;
   } else {

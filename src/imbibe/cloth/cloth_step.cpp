@@ -177,7 +177,7 @@ void find_contacts(Step& s, Real h) {
   self.hits.clear();
   s.report.self_contacts = 0;
   if (!s.params.contact.self) return;
-  reserve_near_pairs(s.sheet, s.params.hand.thickness, h, self);
+  reserve_near_pairs(s.sheet, s.nodes(), s.params.hand.thickness, h, self);
   find_near_pairs(self_rules(s), s.nodes(), h, self);
   s.report.self_contacts = self.touching;
 }
@@ -185,12 +185,12 @@ void find_contacts(Step& s, Real h) {
 void prevent_self_crossings(Step& s, Real h) {
   if (!s.params.contact.self) return;
   SelfContact& self = s.work.self;
-  reserve_near_pairs(s.sheet, s.params.hand.thickness, h, self);
+  reserve_near_pairs(s.sheet, s.nodes(), s.params.hand.thickness, h, self);
   const SweptReport swept = prevent_crossings(s.sheet, s.nodes(), h, self);
   s.report.swept_hits += swept.hits;
   s.report.rigid_zones += swept.zones;
   s.report.unresolved_crossings += swept.unresolved;
-  note_motion(s.sheet, h, self);
+  note_motion(s.sheet, s.nodes(), h, self);
 }
 
 struct SubstepErrors {
@@ -315,6 +315,38 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
   require_finite(s);
   if (params.contact.self) work.self.position = sheet.position;
   if (loads.measure) measure(s);
+  return report;
+}
+
+PushReport push_cloth(Sheet& sheet, const ClothParams& params, std::span<const Real> inverse_mass,
+                      std::span<const Vec3> impulse, Real dt, ClothScratch& scratch) {
+  IMBIBE_ASSERT(impulse.size() == sheet.size() && inverse_mass.size() == sheet.size());
+  PushReport report;
+  ClothScratch::Work& work = scratch.work();
+  if (!work.built || work.topology_key != sheet.topology_key) work.build(sheet);
+  work.push.resize(sheet.size());
+  work.held.assign(sheet.size(), Vec3{});
+  for (std::size_t i = 0; i < sheet.size(); ++i) {
+    work.push[i] = inverse_mass[i] * impulse[i];
+    if (inverse_mass[i] == 0) report.pin_impulse -= impulse[i];
+  }
+  const NodeMotion nodes{sheet.position.data(), work.push.data(), inverse_mass.data(), work.held.data()};
+  SelfContact& self = work.self;
+  if (params.contact.self) {
+    if (self.position != sheet.position) self.room.clear();
+    reserve_near_pairs(sheet, nodes, params.hand.thickness, dt, self);
+    const SweptReport swept = prevent_crossings(sheet, nodes, dt, self);
+    report.swept_hits = swept.hits;
+    report.unresolved_crossings = swept.unresolved;
+    note_motion(sheet, nodes, dt, self);
+  }
+  for (std::size_t i = 0; i < sheet.size(); ++i) {
+    report.pin_impulse -= work.held[i];
+    if (inverse_mass[i] == 0) continue;
+    sheet.velocity[i] += work.push[i];
+    sheet.position[i] += dt * work.push[i];
+  }
+  if (params.contact.self) self.position = sheet.position;
   return report;
 }
 

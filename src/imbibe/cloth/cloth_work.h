@@ -18,6 +18,7 @@ struct ClothScratch::Work {
   ElasticWork elastic;
   std::vector<Real> inverse_mass;           // 1/kg, 0 for pinned nodes
   std::vector<Vec3> held;                   // N s given to pinned nodes in a substep
+  std::vector<Vec3> push;                   // m/s, changes of velocity in push_cloth
   std::vector<Vec3> normal;                 // of the nodes, unit
   std::vector<Real> clearance;              // m, node-major by solid: how far it may move unseen
   SelfContact self;

@@ -224,19 +224,19 @@ void list_near_pairs(const Sheet& sheet, Real thickness, SelfContact& c) {
 
 namespace {
 
-Vec3 mean_velocity(const Sheet& sheet) {
-  return parallel_sum(sheet.size(), [&](std::size_t begin, std::size_t end) {
+Vec3 mean_velocity(const NodeMotion& nodes, std::size_t count) {
+  return parallel_sum(count, [&](std::size_t begin, std::size_t end) {
     Vec3 sum;
-    for (std::size_t i = begin; i < end; ++i) sum += sheet.velocity[i];
+    for (std::size_t i = begin; i < end; ++i) sum += nodes.velocity[i];
     return sum;
-  }, node_tile) / static_cast<Real>(sheet.size());
+  }, node_tile) / static_cast<Real>(count);
 }
 
 }  // namespace
 
-void reserve_near_pairs(const Sheet& sheet, Real thickness, Real h, SelfContact& c) {
-  const Vec3 mean = mean_velocity(sheet);
-  const auto motion = [&](std::size_t i) { return h * norm(sheet.velocity[i] - mean); };
+void reserve_near_pairs(const Sheet& sheet, const NodeMotion& nodes, Real thickness, Real h, SelfContact& c) {
+  const Vec3 mean = mean_velocity(nodes, sheet.size());
+  const auto motion = [&](std::size_t i) { return h * norm(nodes.velocity[i] - mean); };
   if (c.room.size() == sheet.size() && c.thickness == thickness) {
     const Real beyond = parallel_max(sheet.size(), Real{-1}, [&](std::size_t begin, std::size_t end) {
       Real most = -1;
@@ -252,9 +252,9 @@ void reserve_near_pairs(const Sheet& sheet, Real thickness, Real h, SelfContact&
   list_near_pairs(sheet, thickness, c);
 }
 
-void note_motion(const Sheet& sheet, Real h, SelfContact& c) {
-  const Vec3 mean = mean_velocity(sheet);
-  parallel_for(sheet.size(), [&](std::size_t i) { c.moved[i] += h * norm(sheet.velocity[i] - mean); }, node_tile);
+void note_motion(const Sheet& sheet, const NodeMotion& nodes, Real h, SelfContact& c) {
+  const Vec3 mean = mean_velocity(nodes, sheet.size());
+  parallel_for(sheet.size(), [&](std::size_t i) { c.moved[i] += h * norm(nodes.velocity[i] - mean); }, node_tile);
 }
 
 }  // namespace imbibe

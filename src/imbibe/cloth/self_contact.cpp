@@ -1,15 +1,14 @@
 #include "imbibe/cloth/self_contact.h"
 
-#include <numeric>
-
+#include "imbibe/cloth/liquid_bridge.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/core/union_find.h"
 
 namespace imbibe {
 namespace {
 
 constexpr std::size_t pair_tile = 256;
 constexpr Real leading_out_time = 0.02;  // s in which layers that are too near are led apart
-constexpr Real bridge_length = 0.5e-3;   // m over which a liquid bridge holds
 constexpr int impulse_rounds = 8;        // then nodes move as one
 constexpr int zone_rounds = 60;
 
@@ -74,11 +73,6 @@ void find_hits(SelfContact& c, const NodeMotion& nodes, Real h) {
 
 // --- zones ----------------------------------------------------------------------------------------------------------
 
-Index root_of(std::vector<Index>& zone, Index i) {
-  while (zone[i] != i) i = zone[i] = zone[zone[i]];
-  return i;
-}
-
 // The nodes of each zone take the zone's mean velocity, or that of its pins. False when pins of one zone part.
 void move_zones(const Sheet& sheet, const NodeMotion& nodes, SelfContact& c) {
   struct Sum {
@@ -142,15 +136,12 @@ SweptReport prevent_crossings(const Sheet& sheet, const NodeMotion& nodes, Real 
   }
   find_hits(c, nodes, h);
   if (c.hits.empty()) return report;
-  c.zone.resize(sheet.size());
-  std::iota(c.zone.begin(), c.zone.end(), Index{0});
+  separate_all(c.zone, sheet.size());
   for (int round = 0; round < zone_rounds && !c.hits.empty(); ++round) {
     report.hits += c.hits.size();
     ++report.zones;
     for (const Index k : c.hits) {
-      for (std::size_t j = 1; j < 4; ++j) {
-        c.zone[root_of(c.zone, c.pairs[k].node[j])] = root_of(c.zone, c.pairs[k].node[0]);
-      }
+      for (std::size_t j = 1; j < 4; ++j) unite(c.zone, c.pairs[k].node[0], c.pairs[k].node[j]);
     }
     move_zones(sheet, nodes, c);
     find_hits(c, nodes, h);

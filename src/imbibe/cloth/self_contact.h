@@ -66,10 +66,10 @@ struct SelfContactRules {
 // Pairs that may come nearer than the thickness while no node moves further than contact.room.
 void list_near_pairs(const Sheet& sheet, Real thickness, SelfContact& contact);
 
-// Makes the list anew if a node would leave its room in h at the velocities as they are.
-void reserve_near_pairs(const Sheet& sheet, Real thickness, Real h, SelfContact& contact);
+// Makes the list anew if a node would leave its room in h at the velocities of `nodes` as they are.
+void reserve_near_pairs(const Sheet& sheet, const NodeMotion& nodes, Real thickness, Real h, SelfContact& contact);
 // Books the motion of a substep.
-void note_motion(const Sheet& sheet, Real h, SelfContact& contact);
+void note_motion(const Sheet& sheet, const NodeMotion& nodes, Real h, SelfContact& contact);
 
 // Lists in `hits` the pairs that may come nearer than their thickness in h, with their gaps.
 void find_near_pairs(const SelfContactRules& rules, const NodeMotion& nodes, Real h, SelfContact& contact);

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "imbibe/cloth/liquid_bridge.h"
+
 namespace imbibe {
 namespace {
 
 constexpr Real leading_out_time = 0.01;  // s in which a node that starts inside a solid is led out
-constexpr Real bridge_length = 0.5e-3;   // m over which a liquid bridge holds
 constexpr int path_samples = 64;
 
 struct Approach {

@@ -5,6 +5,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/portable.h"
+#include "imbibe/geometry/direction.h"
 #include "imbibe/wetting/evaporation.h"
 
 namespace imbibe {
@@ -92,47 +93,53 @@ void carry(CellCloth& cloth, std::span<const std::uint8_t> held, Index from, Ind
   sheet.added_mass[b] += kg;
 }
 
-bool is_free(const Particles& particles, const Vec3& place, Real clearance) {
-  return std::none_of(particles.position.begin(), particles.position.end(), [&](const Float4& x) {
-    return squared_norm(xyz(x) - place) < clearance * clearance;
-  });
-}
+// In particle spacings: how far under the cloth's middle a particle hangs whose liquid wets it (it touches; the liquid's
+// solver keeps it so), how near to others it may be born (nearer it would start with a pressure burst), and what is
+// nearer to the sheet than hanging ones is moved off it.
+constexpr Real hanging = 0.6, clear_of_others = 0.8, clear_of_sheet = 0.4;
 
 // Where what leaks at a cell may hang: under the sheet there, around that place, and one spacing lower.
 std::array<Vec3, 14> birth_places(const CellCloth& cloth, const MovingMesh& surface, Index cell, const Vec3& down, Real spacing) {
-  const Vec3 hang = cloth.soft.sheet.position[(*cloth.node_of_cell)[cell]] + 0.6 * spacing * down;
-  const Vec3 helper = std::abs(down.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 a = normalized(cross(down, helper)), b = cross(down, a);
+  const Vec3 hang = cloth.soft.sheet.position[(*cloth.node_of_cell)[cell]] + hanging * spacing * down;
+  const Vec3 a = any_perpendicular(down), b = cross(down, a);
   std::array<Vec3, 14> places;
   for (std::size_t k = 0; k < places.size(); ++k) {
     Vec3 place = hang + (k < 7 ? 0 : spacing) * down;
     const Real angle = 2 * pi * static_cast<Real>(k % 7) / 6;
     if (k % 7 > 0) place += spacing * (portable::cos(angle) * a + portable::sin(angle) * b);
     // Clear of the sheet, on the side where it hangs.
-    const NearestOnSheet near = nearest_on(surface, place, 0.4 * spacing);
+    const NearestOnSheet near = nearest_on(surface, place, clear_of_sheet * spacing);
     if (near.at.triangle != no_index)
-      place = near.point + 0.6 * spacing * (dot(near.normal, down) >= 0 ? near.normal : -near.normal);
+      place = near.point + hanging * spacing * (dot(near.normal, down) >= 0 ? near.normal : -near.normal);
     places[k] = place;
   }
   return places;
 }
 
-void release(CellCloth& cloth, const SoftSheetScratch& scratch, Liquid& liquid, const Vec3& gravity,
+void release(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Vec3& gravity, const SolidAt& solid_at,
              CellExchangeReport& report) {
-  const Real mass = liquid.particle_mass;
-  if (mass <= 0) return;
+  const Real mass = liquid.particle_mass, spacing = liquid.spacing();
+  const auto waits = [&](Real kg) { return kg >= mass; };
+  if (mass <= 0 || std::none_of(cloth.waiting_kg.begin(), cloth.waiting_kg.end(), waits)) return;
+  Bounds region;
+  for (const Vec3& x : cloth.soft.sheet.position) region.include(x);
+  region.grow(4 * spacing);  // births are within about 2.2 of a node, others matter within 0.8 of them
+  scratch.occupancy.reset(liquid.particles.position, region, clear_of_others * spacing);
   const Vec3 down = normalized(gravity);
   for (Index cell = 0; cell < cloth.waiting_kg.size(); ++cell) {
-    if (cloth.waiting_kg[cell] < mass) continue;
+    if (!waits(cloth.waiting_kg[cell])) continue;
     const Index node = (*cloth.node_of_cell)[cell];
-    for (const Vec3& place : birth_places(cloth, scratch.surface, cell, down, liquid.spacing())) {
-      if (cloth.waiting_kg[cell] < mass) break;
-      if (!is_free(liquid.particles, place, 0.8 * liquid.spacing())) continue;
-      add_particle(liquid, place, cloth.soft.sheet.velocity[node]);
-      // Rounding to single precision is the sheet's: momentum stays whole.
-      cloth.soft.liquid_impulse -= mass * xyz(liquid.particles.velocity.back());
+    for (const Vec3& place : birth_places(cloth, scratch.surface, cell, down, spacing)) {
+      if (!waits(cloth.waiting_kg[cell])) break;
+      if (!scratch.occupancy.is_free(place) || (solid_at && solid_at(place))) continue;
+      const Vec3 velocity = cloth.soft.sheet.velocity[node];
+      add_particle(liquid, place, velocity);
+      scratch.occupancy.add(place);
       cloth.waiting_kg[cell] -= mass;
       cloth.soft.sheet.added_mass[node] = std::max(0.0, cloth.soft.sheet.added_mass[node] - mass);
+      cloth.soft.liquid_impulse -= mass * velocity;
+      // What rounding to single precision takes from the particle stays with the node: momentum is whole.
+      give_impulse(cloth.soft, scratch.held, node, mass * (velocity - xyz(liquid.particles.velocity.back())));
       ++cloth.released_particles, ++report.released;
     }
   }
@@ -205,11 +212,9 @@ void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid,
   const Real gap = 0.25 * std::min(cloth.soft.cloth.hand.thickness, 0.2 * dx);
   const ImpactParams impact{.restitution = cloth.params.restitution, .scatter = cloth.params.scatter,
                             .rest_speed = 0.5 * std::sqrt(norm(gravity) * dx)};
-  static thread_local std::vector<SheetHit> hits;
-  static thread_local std::vector<std::vector<SheetHit>> tiles;
-  find_sheet_hits(scratch.surface, before.first(p.size()), p.position, hits, tiles);
+  find_sheet_hits(scratch.surface, before.first(p.size()), p.position, scratch.hits, scratch.hit_tiles);
   Sheet& sheet = cloth.soft.sheet;
-  for (const SheetHit& hit : hits) {
+  for (const SheetHit& hit : scratch.hits) {
     const Index i = hit.particle;
     if (dead[i]) continue;
     ++cloth.crossings;
@@ -263,7 +268,7 @@ void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid
 }
 
 void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Air& air, const Vec3& gravity,
-                     Real dt, CellExchangeReport& report) {
+                     Real dt, CellExchangeReport& report, const SolidAt& solid_at) {
   const Sheet& sheet = cloth.soft.sheet;
   const CellGrid& grid = *cloth.grid;
   if (cloth.contents.parcels() > 0) {
@@ -285,7 +290,7 @@ void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid
       cloth.waiting_kg[leak.at] += leak.kg;
     }
   }
-  release(cloth, scratch, liquid, gravity, report);
+  release(cloth, scratch, liquid, gravity, solid_at, report);
   weigh(cloth);
 }
 

@@ -15,6 +15,7 @@
 #include <memory>
 #include <string>
 
+#include "imbibe/coupling/release.h"
 #include "imbibe/coupling/soft_sheet.h"
 #include "imbibe/wetting/cells.h"
 #include "imbibe/wetting/contents.h"
@@ -59,7 +60,7 @@ std::vector<float> node_saturation(const CellCloth& cloth);
 std::vector<Vec3> gravity_along(const Sheet& sheet, const Vec3& gravity);
 
 struct CellExchangeReport {
-  std::size_t absorbed = 0, bounced = 0, released = 0, put_back = 0;
+  std::size_t absorbed = 0, bounced = 0, released = 0;
   Real evaporated_kg = 0;
 };
 
@@ -72,9 +73,9 @@ void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid,
 void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, std::span<std::uint8_t> dead,
                      const Vec3& gravity, CellExchangeReport& report);
 
-// The cells for dt, then whole particles for what has leaked.
+// The cells for dt, then whole particles for what has leaked, born where the liquid leaves room and no solid is.
 void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Air& air, const Vec3& gravity,
-                     Real dt, CellExchangeReport& report);
+                     Real dt, CellExchangeReport& report, const SolidAt& solid_at = {});
 
 // Added mass, stiffness and damping of the nodes from what their cells hold.
 void weigh(CellCloth& cloth);

@@ -4,23 +4,22 @@
 
 #include "imbibe/core/parallel.h"
 #include "imbibe/core/portable.h"
-#include "imbibe/geometry/sampling.h"
+#include "imbibe/geometry/direction.h"
 
 namespace imbibe {
 namespace {
 
 constexpr Real calm_speed = 1e-3;  // m/s, root mean square, below which a sheet counts as still
 constexpr Real calm_time = 0.5;    // s of it until it rests
-constexpr Real standard_gravity = 9.81;
-constexpr Real least_waking_share = 0.01;  // of its weight: a force of the liquid that moves a resting sheet again
+constexpr Real least_waking_share = 0.01;  // of its weight: a change of load that moves a resting sheet again
+constexpr Real load_averaging_time = 0.05;  // s: some hundred steps of the liquid, whose pressure flickers by a few per cent
 
 Vec3 xyz(const Float4& f) { return {f.x, f.y, f.z}; }
 
 // d turned by a random angle up to `most` about a random axis square to it.
 Vec3 turned(const Vec3& d, Real most, const RandomCounter& random) {
   const Real angle = most * uniform(random, 0), around = 2 * pi * uniform(random, 1);
-  const Vec3 helper = std::abs(d.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
-  const Vec3 a = normalized(cross(d, helper)), b = cross(d, a);
+  const Vec3 a = any_perpendicular(d), b = cross(d, a);
   return portable::cos(angle) * d + portable::sin(angle) * (portable::cos(around) * a + portable::sin(around) * b);
 }
 
@@ -41,25 +40,59 @@ void judge_rest(SoftSheet& soft, Real dt) {
   if (soft.calm_s < calm_time) return;
   soft.at_rest = true;
   soft.mass_at_rest = mass;
+  soft.load_at_rest = soft.load;
+  soft.support_impulse -= momentum(soft.sheet);  // what holds it from now on stops it
   std::fill(soft.sheet.velocity.begin(), soft.sheet.velocity.end(), Vec3{});
+}
+
+void wake(SoftSheet& soft) {
+  soft.at_rest = false;
+  soft.calm_s = 0;
+}
+
+void book_liquid_impulse(SoftSheet& soft, const Vec3& place, const Vec3& impulse) {
+  soft.liquid_impulse += impulse;
+  soft.given.force += impulse;
+  soft.given.moment += cross(place, impulse);
+}
+
+// Half the diagonal of the sheet's box: the lever at which a force turns it.
+Real half_extent(const Sheet& sheet) {
+  Bounds box;
+  for (const Vec3& x : sheet.position) box.include(x);
+  return 0.5 * norm(box.size());
+}
+
+// The running mean of what the liquid gives, and whether it is another load than the one the sheet rests under.
+void judge_load(SoftSheet& soft, const Vec3& gravity, Real dt) {
+  const Real blend = std::min(1.0, dt / load_averaging_time);
+  soft.load.force += blend * (soft.given.force / dt - soft.load.force);
+  soft.load.moment += blend * (soft.given.moment / dt - soft.load.moment);
+  soft.given = {};
+  if (!soft.at_rest) return;
+  // Without gravity: what would bring it to the speed of still sheets within the time that rest takes.
+  const Real least = total_mass(soft.sheet) * std::max(least_waking_share * norm(gravity), calm_speed / calm_time);
+  if (norm(soft.load.force - soft.load_at_rest.force) > least ||
+      norm(soft.load.moment - soft.load_at_rest.moment) > least * half_extent(soft.sheet))
+    wake(soft);
+}
+
+// Whether `surface` is the sheet as it is, standing still.
+bool shows_standing(const MovingMesh& surface, const Sheet& sheet) {
+  return surface.mesh.vertices == sheet.position && surface.start == sheet.position;
 }
 
 }  // namespace
 
-void find_held(const Sheet& sheet, std::vector<std::uint8_t>& held) {
-  held.assign(sheet.size(), sheet.fixed ? 1 : 0);
-  for (const Pin& pin : sheet.pins)
-    if (pin.until > sheet.time) held[pin.node] = 1;
+void find_held(const SoftSheet& soft, std::vector<std::uint8_t>& held) {
+  held.assign(soft.sheet.size(), soft.moves() ? 0 : 1);
+  for (const Pin& pin : soft.sheet.pins)
+    if (pin.until > soft.sheet.time) held[pin.node] = 1;
 }
 
 Vec3 velocity_at(const Sheet& sheet, const SurfacePoint& at) {
   const auto& t = sheet.triangles[at.triangle];
   return at.weight[0] * sheet.velocity[t[0]] + at.weight[1] * sheet.velocity[t[1]] + at.weight[2] * sheet.velocity[t[2]];
-}
-
-Vec3 position_at(const Sheet& sheet, const SurfacePoint& at) {
-  const auto& t = sheet.triangles[at.triangle];
-  return at.weight[0] * sheet.position[t[0]] + at.weight[1] * sheet.position[t[1]] + at.weight[2] * sheet.position[t[2]];
 }
 
 Real inverse_mass_at(const Sheet& sheet, std::span<const std::uint8_t> held, const SurfacePoint& at) {
@@ -71,15 +104,15 @@ Real inverse_mass_at(const Sheet& sheet, std::span<const std::uint8_t> held, con
   return sum;
 }
 
+void give_impulse(SoftSheet& soft, std::span<const std::uint8_t> held, Index node, const Vec3& impulse) {
+  book_liquid_impulse(soft, soft.sheet.position[node], impulse);
+  if (held[node]) soft.support_impulse -= impulse;
+  else soft.sheet.velocity[node] += impulse / soft.sheet.mass(node);
+}
+
 void give_impulse(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, const Vec3& impulse) {
-  Sheet& sheet = soft.sheet;
-  soft.liquid_impulse += impulse;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Index node = sheet.triangles[at.triangle][k];
-    const Vec3 part = at.weight[k] * impulse;
-    if (held[node]) soft.support_impulse -= part;
-    else sheet.velocity[node] += part / sheet.mass(node);
-  }
+  const Sheet& sheet = soft.sheet;
+  for (std::size_t k = 0; k < 3; ++k) give_impulse(soft, held, sheet.triangles[at.triangle][k], at.weight[k] * impulse);
 }
 
 void merge_into_node(SoftSheet& soft, std::span<const std::uint8_t> held, Index node, Real kg, const Vec3& velocity) {
@@ -151,10 +184,9 @@ Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real 
 
 Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
   const Sheet& sheet = soft.sheet;
-  find_held(sheet, scratch.held);
+  find_held(soft, scratch.held);
   scratch.inverse_mass.resize(sheet.size());
-  for (std::size_t n = 0; n < sheet.size(); ++n)
-    scratch.inverse_mass[n] = scratch.held[n] || !soft.moves() ? 0 : 1 / sheet.mass(n);
+  for (std::size_t n = 0; n < sheet.size(); ++n) scratch.inverse_mass[n] = scratch.held[n] ? 0 : 1 / sheet.mass(n);
   scratch.wall.surface = &scratch.surface;
   scratch.wall.velocity = scratch.wall_velocity;
   scratch.wall.inverse_mass = scratch.inverse_mass;
@@ -167,54 +199,53 @@ Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
   return wall;
 }
 
-void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, Real dt) {
+void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity, Real dt) {
   const std::vector<Vec3>& impulse = scratch.wall.impulse;
   Vec3 sum{};
-  for (const Vec3& j : impulse) sum += j;
-  soft.liquid_impulse += sum;
-  const Real weight = total_mass(soft.sheet) * standard_gravity;
-  if (soft.at_rest && norm(sum) > least_waking_share * weight * dt) soft.at_rest = false, soft.calm_s = 0;
-  // The liquid went with the sheet as pushed by it: so does the sheet, in velocity and in place.
   for (std::size_t n = 0; n < impulse.size(); ++n) {
-    if (scratch.inverse_mass[n] == 0) {
-      soft.support_impulse -= impulse[n];
-      continue;
-    }
-    const Vec3 change = scratch.inverse_mass[n] * impulse[n];
-    soft.sheet.velocity[n] += change;
-    soft.sheet.position[n] += dt * change;
+    if (impulse[n] == Vec3{}) continue;
+    book_liquid_impulse(soft, soft.sheet.position[n], impulse[n]);
+    sum += impulse[n];
   }
+  if (!soft.moves()) soft.support_impulse -= sum;
+  else if (sum != Vec3{})
+    soft.support_impulse +=
+        push_cloth(soft.sheet, soft.cloth, scratch.inverse_mass, impulse, dt, scratch.cloth).pin_impulse;
+  judge_load(soft, gravity, dt);
 }
 
 ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
                               std::span<const ClothSolid> solids, Real dt) {
   ClothStepReport report;
   Sheet& sheet = soft.sheet;
-  if (scratch.surface.empty()) set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
-  scratch.before = sheet.position;
-  scratch.wall_velocity.assign(sheet.size(), Vec3{});
   if (!soft.moves()) {
     sheet.time += dt;
+    soft.support_impulse -= (total_mass(sheet) * dt) * gravity;
+    if (shows_standing(scratch.surface, sheet)) return report;
+    set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+    scratch.wall_velocity.assign(sheet.size(), Vec3{});
     return report;
   }
+  if (scratch.surface.empty()) set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+  scratch.before = sheet.position;
   report = step_cloth(sheet, soft.cloth, {.gravity = gravity, .solids = solids, .measure = false}, dt, scratch.cloth);
-  soft.support_impulse += report.pin_impulse;
+  soft.support_impulse += report.pin_impulse + report.solid_impulse;
+  scratch.wall_velocity.resize(sheet.size());
   for (std::size_t n = 0; n < sheet.size(); ++n) scratch.wall_velocity[n] = (sheet.position[n] - scratch.before[n]) / dt;
   return report;
 }
 
 void finish_sheet(SoftSheet& soft, SoftSheetScratch& scratch, Real dt) {
   if (soft.moves()) judge_rest(soft, dt);
-  set_step(scratch.surface, scratch.before, soft.sheet.position, soft.sheet.triangles);
-  find_held(soft.sheet, scratch.held);
+  if (!shows_standing(scratch.surface, soft.sheet))
+    set_step(scratch.surface, scratch.before, soft.sheet.position, soft.sheet.triangles);
+  find_held(soft, scratch.held);
 }
 
 void wake_if_heavier(SoftSheet& soft, Real share) {
   if (!soft.at_rest) return;
   const Real mass = total_mass(soft.sheet);
-  if (std::abs(mass - soft.mass_at_rest) <= share * soft.mass_at_rest) return;
-  soft.at_rest = false;
-  soft.calm_s = 0;
+  if (std::abs(mass - soft.mass_at_rest) > share * soft.mass_at_rest) wake(soft);
 }
 
 }  // namespace imbibe

@@ -16,22 +16,39 @@
 #include "imbibe/cloth/cloth_step.h"
 #include "imbibe/core/random.h"
 #include "imbibe/geometry/moving_mesh.h"
-#include "imbibe/liquid/wall.h"
+#include "imbibe/liquid/occupancy.h"
 #include "imbibe/liquid/particles.h"
 #include "imbibe/liquid/sheet_wall.h"
+#include "imbibe/liquid/wall.h"
 
 namespace imbibe {
 
+// What acts on a sheet as a whole: N and N m about the origin (or their integrals over time).
+struct SheetLoad {
+  Vec3 force{}, moment{};
+};
+
+// A sheet that has hardly moved for half a second rests: it is held where it is, as by supports, until its mass or the mean
+// load of the liquid is another than when it came to rest. Books: momentum of the sheet = support_impulse + liquid_impulse
+// + what liquid taken in brought + weight of the moving sheet and air; the weight of a resting or fixed one its supports take.
 struct SoftSheet {
   Sheet sheet;
   ClothParams cloth;
   Real contact_angle = pi / 2;    // rad, of the liquid on the sheet's faces
-  Vec3 support_impulse{};         // N s, given to the sheet by its pins since the start (state)
+  Vec3 support_impulse{};         // N s, given to the sheet by pins, solids and rest since the start (state)
   Vec3 liquid_impulse{};          // N s, given to the sheet by free liquid since the start (state)
+  SheetLoad given{};              // N s and N m s, by free liquid in this step (state)
+  SheetLoad load{};               // by free liquid, running mean (state)
   Real calm_s = 0;                // s for which it has hardly moved (state)
   Real mass_at_rest = 0;          // kg, when it came to rest (state)
+  SheetLoad load_at_rest{};       // then (state)
   bool at_rest = false;           // it is not stepped until something changes (state)
   bool moves() const { return !sheet.fixed && !at_rest; }
+};
+
+struct SheetHit {
+  Index particle = no_index;
+  MovingCrossing crossing;
 };
 
 // Work space and caches of one sheet; not state.
@@ -40,20 +57,24 @@ struct SoftSheetScratch {
   MovingMesh surface;             // over the last step
   std::vector<Vec3> before;       // positions before it
   std::vector<Vec3> wall_velocity;  // m/s per node, mean over the cloth's step: what the liquid meets
-  std::vector<std::uint8_t> held;  // per node: a support holds it
+  std::vector<std::uint8_t> held;  // per node: a support holds it, or rest does
   std::vector<Real> inverse_mass;  // 1/kg per node, 0: held
   SheetWall wall;                  // what the liquid's solver sees of it
+  std::vector<SheetHit> hits;      // of the liquid's particles in this step
+  std::vector<std::vector<SheetHit>> hit_tiles;
+  Occupancy occupancy;             // where leaks may be born
 };
 
-// Which nodes supports hold at the sheet's time.
-void find_held(const Sheet& sheet, std::vector<std::uint8_t>& held);
+// Which nodes are held at the sheet's time: by pins, or all of them because it is fixed or at rest.
+void find_held(const SoftSheet& soft, std::vector<std::uint8_t>& held);
 
 Vec3 velocity_at(const Sheet& sheet, const SurfacePoint& at);
-Vec3 position_at(const Sheet& sheet, const SurfacePoint& at);
 Real inverse_mass_at(const Sheet& sheet, std::span<const std::uint8_t> held, const SurfacePoint& at);
 // A particle on a sheet that does not move, or held at all corners, meets an infinite mass (0).
 
-// J in N s at a point of the sheet. What held nodes get goes to their supports at once: support_impulse -= their part.
+// J in N s, by liquid, on a node or at a point of the sheet. What held nodes get goes to their supports at once:
+// support_impulse -= their part.
+void give_impulse(SoftSheet& soft, std::span<const std::uint8_t> held, Index node, const Vec3& impulse);
 void give_impulse(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, const Vec3& impulse);
 
 // Mass m with velocity v joins node k for good: momentum kept. The caller sets added_mass to include it afterwards.
@@ -70,10 +91,6 @@ struct ImpactParams {
 Vec3 velocity_after_impact(const Vec3& velocity, const Vec3& v_surface, const Vec3& n, Real particle_mass,
                            Real surface_inverse_mass, const ImpactParams& params, const RandomCounter& random);
 
-struct SheetHit {
-  Index particle = no_index;
-  MovingCrossing crossing;
-};
 // Particles whose way from `before` to `now` crosses the sheet in its last step, by rising particle.
 void find_sheet_hits(const MovingMesh& surface, std::span<const Float4> before, std::span<const Float4> now,
                      std::vector<SheetHit>& hits, std::vector<std::vector<SheetHit>>& tiles);
@@ -85,15 +102,16 @@ Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real 
 // A step of sheet and liquid:
 //   advance_sheet      the cloth's own step, under all forces but the liquid's
 //   sheet_as_wall      where it was at the start, with its mean velocity over the step, for the liquid's step of the same dt
-//   take_wall_impulse  what the liquid gave it changes velocity AND place: v += J/m, x += dt J/m. The liquid moved with the
-//                      sheet so pushed; a push in velocity alone would let a taut sheet drift into what lies on it, by
-//                      T dt/m (0.3 m/s for 4 kg/m2 on a shirt at 1 ms), step after step.
+//   take_wall_impulse  what the liquid gave it changes velocity AND place: v += J/m, x += dt J/m, as far as its own layers let
+//                      it (push_cloth). The liquid moved with the sheet so pushed; a push in velocity alone would let a taut
+//                      sheet drift into what lies on it, by T dt/m (0.3 m/s for 4 kg/m2 on a shirt at 1 ms), step after
+//                      step. A resting sheet wakes here when the mean load is no longer the one it rests under.
 //   finish_sheet       sets scratch.surface over the whole step, for the swept contact
-// A sheet at rest or fixed costs nothing.
+// Of a sheet at rest or fixed nothing is computed but whether it is to wake.
 ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
                               std::span<const ClothSolid> solids, Real dt);
 Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch);
-void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, Real dt);
+void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity, Real dt);
 void finish_sheet(SoftSheet& soft, SoftSheetScratch& scratch, Real dt);
 
 // Wakes a resting sheet whose mass has changed by more than `share`.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "imbibe/core/types.h"
@@ -60,6 +61,20 @@ inline TrianglePoint closest_on_triangle(const Vec3& p, const Vec3& a, const Vec
   }
   const Real scale = 1 / (to_a + to_b + to_c);
   return {a + (to_b * scale) * ab + (to_c * scale) * ac, TriangleFeature::face};
+}
+
+// Barycentric coordinates of the point of the triangle's plane nearest to p, of a, b and c; they add up to 1. A triangle without
+// area has none: 1 for its corner nearest to p.
+inline std::array<Real, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, n = cross(ab, ac);
+  const Real nn = squared_norm(n);
+  if (!(nn > 0)) {
+    const Real la = squared_norm(p - a), lb = squared_norm(p - b), lc = squared_norm(p - c);
+    if (la <= lb && la <= lc) return {1, 0, 0};
+    return lb <= lc ? std::array<Real, 3>{0, 1, 0} : std::array<Real, 3>{0, 0, 1};
+  }
+  const Real v = dot(cross(ap, ac), n) / nn, w = dot(cross(ab, ap), n) / nn;
+  return {1 - v - w, v, w};
 }
 
 }  // namespace imbibe

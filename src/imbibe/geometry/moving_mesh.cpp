@@ -8,6 +8,9 @@ namespace imbibe {
 namespace {
 
 constexpr Real slack = 1e-9;  // of weights: far above their rounding, far below any triangle
+// cos 45 deg: a point over a convex fold leans by up to half the fold's turn, at most 45 deg where two triangles stand
+// square to each other; beside an outline it leans by up to 90 deg.
+constexpr Real border_cosine = 0.7;
 
 struct Cubic {
   std::array<Real, 4> c{};
@@ -70,14 +73,6 @@ void set_boxes(MovingMesh& m, BoxHierarchy& tree, bool whole_way, bool build) {
 
 }  // namespace
 
-std::array<Real, 3> weights_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = cross(b - a, c - a);
-  const Real square = squared_norm(n);
-  if (square <= 0) return {1, 0, 0};
-  const Real wb = dot(cross(p - a, c - a), n) / square, wc = dot(cross(b - a, p - a), n) / square;
-  return {1 - wb - wc, wb, wc};
-}
-
 std::optional<MovingCrossing> cross_moving_triangle(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& start,
                                                     const std::array<Vec3, 3>& end) {
   const Cubic f = plane_function(p0, p1, start, end);
@@ -91,7 +86,7 @@ std::optional<MovingCrossing> cross_moving_triangle(const Vec3& p0, const Vec3& 
       const Real t = root_between(f, low, high);
       const Vec3 p = between(p0, p1, t), a = between(start[0], end[0], t), b = between(start[1], end[1], t),
                  c = between(start[2], end[2], t);
-      const std::array<Real, 3> w = weights_of(p, a, b, c);
+      const std::array<Real, 3> w = barycentric(p, a, b, c);
       if (w[0] >= -slack && w[1] >= -slack && w[2] >= -slack) {
         MovingCrossing hit;
         hit.time_fraction = t;
@@ -153,15 +148,15 @@ NearestOnSheet nearest_on(const MovingMesh& m, const Vec3& p, Real limit) {
   const auto& v = m.mesh.triangles[near.triangle];
   const Vec3 &a = m.mesh.vertices[v[0]], &b = m.mesh.vertices[v[1]], &c = m.mesh.vertices[v[2]];
   n.at.triangle = near.triangle;
-  n.at.weight = weights_of(near.point, a, b, c);
+  n.at.weight = barycentric(near.point, a, b, c);
   n.point = near.point;
   n.distance = std::sqrt(near.squared_distance);
   const Vec3 own = normalized(cross(b - a, c - a)), away = p - near.point;
   n.side = dot(away, own) < 0 ? -1 : 1;
   n.normal = n.distance > 1e-9 ? away / n.distance : n.side * own;
-  // Beside the sheet: the nearest point is on an edge or corner and the way to it leans out of the triangle's plane's
-  // normal by more than the fold between two triangles would.
-  n.on_border = near.feature != TriangleFeature::face && std::abs(dot(n.normal, own)) < 0.7;
+  // Beside the sheet: the nearest point is on an edge or corner and the way to it leans out of the triangle's normal by
+  // more than the fold between two triangles would.
+  n.on_border = near.feature != TriangleFeature::face && std::abs(dot(n.normal, own)) < border_cosine;
   return n;
 }
 

@@ -65,7 +65,4 @@ struct NearestOnSheet {
 NearestOnSheet nearest_on(const MovingMesh& moving, const Vec3& p,
                           Real limit = std::numeric_limits<Real>::infinity());
 
-// Weights of the point of a triangle's plane nearest to p.
-std::array<Real, 3> weights_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-
 }  // namespace imbibe

@@ -2,17 +2,12 @@
 
 #include <algorithm>
 
+#include "imbibe/geometry/direction.h"
+
 namespace imbibe {
 namespace {
 
 constexpr Real never = std::numeric_limits<Real>::infinity();
-
-// A unit vector at right angles to `direction`, for the point that lies exactly on an axis.
-Vec3 any_perpendicular(const Vec3& direction) {
-  const Vec3 u = normalized(direction);
-  const Vec3 other = std::abs(u.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  return normalized(cross(u, other));
-}
 
 // Adds the time span of a convex part to that of the union (the capsule is one convex body made of three).
 void merge(std::optional<TimeSpan>& all, const TimeSpan& part) {

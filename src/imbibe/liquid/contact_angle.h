@@ -13,7 +13,7 @@
 // Hysteresis: no line force while the actual angle is between receding and advancing.
 // Friction of the line: particles at the line feel drag line_friction sqrt(gamma dx/rho) |G|/d [1/s].
 // Source: idea of the line force, Huber et al., J. Comput. Phys. 310 (2016) 459; Young 1805.
-// Validity: plane or solid of radius >= 3 H; 30 to 140 deg. Tested in tests/liquid/drop_test.cpp.
+// Validity: plane or solid of radius >= 3 H; 30 to 120 deg. Tested in tests/liquid/drop_test.cpp.
 #pragma once
 
 #include <algorithm>

@@ -16,6 +16,11 @@ void SheetContacts::begin(std::span<SheetFoot* const> feet, std::span<SheetWall*
     if (wall) velocity_.insert(velocity_.end(), wall->velocity.begin(), wall->velocity.end());
   }
   answer_.assign(velocity_.size(), Vec3{});
+  touched_.clear();
+  for (const SheetFoot* foot : feet_)
+    for (const Index node : foot->node) touched_.push_back(first_node_[foot->wall] + node);
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
 }
 
 Vec3 SheetContacts::at(const SheetFoot& foot, const std::vector<Vec3>& nodal) const {
@@ -35,8 +40,7 @@ void SheetContacts::add_rate(std::vector<float>& rate, float scale) const {
 }
 
 void SheetContacts::answer(std::span<const Float4> k) {
-  for (const SheetFoot* foot : feet_)
-    for (std::size_t c = 0; c < 3; ++c) answer_[first_node_[foot->wall] + foot->node[c]] = {};
+  for (const std::size_t n : touched_) answer_[n] = {};
   for (const SheetFoot* foot : feet_) {
     const Vec3 force = (particle_mass_ * 2 * static_cast<Real>(k[foot->particle].w)) * Vec3(foot->push);
     for (std::size_t c = 0; c < 3; ++c)
@@ -50,7 +54,7 @@ void SheetContacts::add_answer(std::vector<float>& applied) const {
 }
 
 void SheetContacts::advance(Real scale) {
-  for (std::size_t n = 0; n < velocity_.size(); ++n) velocity_[n] += scale * answer_[n];
+  for (const std::size_t n : touched_) velocity_[n] += scale * answer_[n];
 }
 
 void SheetContacts::add_diagonal(std::vector<float>& factor) const {

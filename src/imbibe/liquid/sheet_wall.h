@@ -68,6 +68,7 @@ class SheetContacts {
   std::vector<SheetWall*> walls_;
   std::vector<std::size_t> first_node_;   // of each wall in the arrays below
   std::vector<Vec3> velocity_, answer_;
+  std::vector<std::size_t> touched_;      // nodes under a foot, each once: only they answer
   Real particle_mass_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/portable.h"
 #include "imbibe/core/random.h"
+#include "imbibe/geometry/direction.h"
 
 namespace imbibe {
 
@@ -106,8 +107,7 @@ constexpr int random_places = 8;
 
 Vec3 place_in_pipe(const Source& s, std::uint64_t number, int attempt) {
   const RandomCounter id{s.seed, number, static_cast<std::uint64_t>(attempt)};
-  const Vec3 axis = normalized(s.velocity), helper = std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
-  const Vec3 a = normalized(cross(axis, helper)), b = cross(axis, a);
+  const Vec3 axis = normalized(s.velocity), a = any_perpendicular(axis), b = cross(axis, a);
   const Real r = s.radius * std::sqrt(uniform(id, 0)), angle = 2 * pi * uniform(id, 1);
   return s.centre + r * portable::cos(angle) * a + r * portable::sin(angle) * b - s.length * uniform(id, 2) * axis;
 }

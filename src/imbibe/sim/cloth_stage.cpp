@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "imbibe/sim/solid_at.h"
+
 namespace imbibe {
 namespace {
 
@@ -68,7 +70,7 @@ void meet_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report
   for (std::size_t i = 0; i < world.cell_cloths.size(); ++i) {
     CellCloth& cloth = world.cell_cloths[i];
     SoftSheetScratch& own = scratch.sheets_in_motion[i];
-    if (report.liquid_moved) take_wall_impulse(cloth.soft, own, dt);
+    if (report.liquid_moved) take_wall_impulse(cloth.soft, own, world.gravity, dt);
     finish_sheet(cloth.soft, own, dt);
     if (!report.liquid_moved) continue;
     meet_particles(cloth, own, world.liquid, scratch.liquid.fields.position, scratch.dead, world.gravity, world.seed,
@@ -77,7 +79,8 @@ void meet_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report
   }
   remove_particles(world.liquid.particles, scratch.dead);
   for (std::size_t i = 0; i < world.cell_cloths.size(); ++i)
-    step_cell_cloth(world.cell_cloths[i], scratch.sheets_in_motion[i], world.liquid, world.air, world.gravity, dt, exchange);
+    step_cell_cloth(world.cell_cloths[i], scratch.sheets_in_motion[i], world.liquid, world.air, world.gravity, dt, exchange,
+                    [&](const Vec3& place) { return solid_at(world, no_index, place); });
   world.ledger.evaporated_kg += exchange.evaporated_kg;
   report.absorbed += exchange.absorbed, report.released += exchange.released, report.hits += exchange.bounced;
   if (exchange.released > 0 || (report.cloth_moved && world.pace.resting)) {

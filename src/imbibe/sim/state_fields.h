@@ -31,6 +31,12 @@ void visit_soft_sheet(Visitor& v, AnySheet& soft, const std::string& group) {
   v.value("substep", soft.sheet.substep);
   v.value("support_impulse", soft.support_impulse);
   v.value("liquid_impulse", soft.liquid_impulse);
+  v.value("given_force", soft.given.force);
+  v.value("given_moment", soft.given.moment);
+  v.value("load_force", soft.load.force);
+  v.value("load_moment", soft.load.moment);
+  v.value("load_at_rest_force", soft.load_at_rest.force);
+  v.value("load_at_rest_moment", soft.load_at_rest.moment);
   v.value("calm_s", soft.calm_s);
   v.value("mass_at_rest", soft.mass_at_rest);
   v.value("at_rest", soft.at_rest);
