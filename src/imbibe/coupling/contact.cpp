@@ -209,7 +209,44 @@ std::optional<YarnHit> first_hit(const YarnContactIndex& index, const YarnNetwor
   return best.hit;
 }
 
-void find_hits(const YarnContactIndex& index, const YarnNetwork& network, const Placement& placement,
+namespace {
+
+// What every query of a step has in common.
+struct FirstHit {
+  const YarnContactIndex& index;
+  const YarnNetwork& network;
+  Real particle_radius;
+  const ContactParams& params;
+  ContactCounts& counts;
+  std::optional<YarnHit> operator()(const Vec3& p0, const Vec3& p1) const {
+    return first_hit(index, network, p0, p1, particle_radius, params, &counts);
+  }
+};
+
+std::optional<ParticleHit> hit_of_flat(const FirstHit& first, const ClothPlace& place, const Vec3& from, const Vec3& way) {
+  const auto hit = first(place.to_sheet(from), place.to_sheet(from + way));
+  if (!hit) return std::nullopt;
+  ParticleHit found{no_index, *hit, hit->point};
+  found.hit.point = place.to_world(hit->point);
+  found.hit.normal = place.to_world(hit->normal) - place.to_world({});
+  return found;
+}
+
+std::optional<ParticleHit> hit_of_bent(const FirstHit& first, const ClothPlace& place, const Vec3& from,
+                                       const Vec3& velocity, Real step_s) {
+  const ClothPlace::Frame frame = place.frame_near(from);
+  if (!std::isfinite(frame.at.z)) return std::nullopt;
+  const auto hit = first(frame.at, frame.at + frame.into_sheet(step_s * (velocity - frame.velocity)));
+  if (!hit) return std::nullopt;
+  ParticleHit found{no_index, *hit, hit->point};
+  found.hit.point = from + frame.into_world(hit->point - frame.at);
+  found.hit.normal = frame.into_world(hit->normal);
+  return found;
+}
+
+}  // namespace
+
+void find_hits(const YarnContactIndex& index, const YarnNetwork& network, const ClothPlace& place,
                std::span<const Float4> position, std::span<const Float4> velocity, Real step_s, Real particle_radius,
                const ContactParams& params, std::vector<ParticleHit>& hits, ContactScratch& scratch,
                ContactCounts* counts) {
@@ -221,15 +258,15 @@ void find_hits(const YarnContactIndex& index, const YarnNetwork& network, const 
     const std::size_t tile = begin / default_tile;
     std::vector<ParticleHit>& found = scratch.tiles[tile];
     found.clear();
+    const FirstHit q{index, network, particle_radius, params, scratch.counts[tile]};
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 v{velocity[i].x, velocity[i].y, velocity[i].z};
       const Vec3 from{position[i].x, position[i].y, position[i].z};
-      auto hit = first_hit(index, network, placement.to_sheet(from), placement.to_sheet(from + step_s * v),
-                           particle_radius, params, &scratch.counts[tile]);
+      const std::optional<ParticleHit> hit =
+          place.is_flat() ? hit_of_flat(q, place, from, step_s * v) : hit_of_bent(q, place, from, v, step_s);
       if (!hit) continue;
-      hit->point = placement.to_world(hit->point);
-      hit->normal = placement.to_world(hit->normal) - placement.origin;
-      found.push_back({static_cast<Index>(i), *hit});
+      found.push_back(*hit);
+      found.back().particle = static_cast<Index>(i);
     }
   });
   hits.clear();

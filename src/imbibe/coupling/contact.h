@@ -1,8 +1,8 @@
 // Contact of moving particles with yarns: which segment a particle meets first on its path of the next step.
 //
 // Boxes in the order textile -> (groups of) yarns -> yarn -> (groups of) segments -> segment -> triangles of its tube;
-// a parent's box is made of its children's corners (seed A section 4). Only the segments' boxes hold geometry, so a
-// moved sheet needs one refit from the bottom.
+// a parent's box is made of its children's corners (seed A section 4). Only the segments' boxes hold geometry. On a soft
+// sheet they stay as woven: the particle is carried into the flat cloth instead (embedding.h).
 //
 // The rules of seed A section 5.1, with d the particle's path p0 -> p1 and n the outward normal where it is nearest:
 //   distance   contact begins where the particle's centre is `particle_radius` from the yarn's surface
@@ -30,6 +30,7 @@
 #include "imbibe/core/types.h"
 #include "imbibe/coupling/bounce.h"
 #include "imbibe/coupling/contact_index.h"
+#include "imbibe/coupling/embedding.h"
 #include "imbibe/coupling/yarn_tube.h"
 #include "imbibe/fabric/network.h"
 #include "imbibe/liquid/particles.h"
@@ -82,6 +83,7 @@ std::optional<YarnHit> first_hit(const YarnContactIndex& index, const YarnNetwor
 struct ParticleHit {
   Index particle = no_index;
   YarnHit hit;  // point and normal in world coordinates
+  Vec3 sheet_point{};  // the point in sheet coordinates
 };
 
 // Reused between steps, so that a step allocates nothing once warm.
@@ -92,7 +94,8 @@ struct ContactScratch {
 
 // The first hits of all particles that move by velocity * step_s, in rising particle order: the same for any number of
 // threads. A particle far from the sheet costs one box test.
-void find_hits(const YarnContactIndex& index, const YarnNetwork& network, const Placement& placement,
+// On a sheet that moves the way is the one relative to it.
+void find_hits(const YarnContactIndex& index, const YarnNetwork& network, const ClothPlace& place,
                std::span<const Float4> position, std::span<const Float4> velocity, Real step_s, Real particle_radius,
                const ContactParams& params, std::vector<ParticleHit>& hits, ContactScratch& scratch,
                ContactCounts* counts = nullptr);

@@ -65,12 +65,13 @@ void find_patches(const Liquid& liquid, Real particle_area, Footprint& f) {
 }
 
 // Total head of the liquid in Pa: no steady pressure at the sheet exceeds it.
-Real total_head(const Liquid& liquid, const Placement& placement, const Vec3& gravity) {
+Real total_head(const Liquid& liquid, const ClothPlace& place, const Vec3& gravity) {
   Real head = 0;
+  const Vec3 foot = place.foot(gravity);
   const Particles& p = liquid.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Float4 &x = p.position[i], &v = p.velocity[i];
-    const Real fall = -dot(gravity, Vec3(x.x, x.y, x.z) - placement.origin);
+    const Real fall = -dot(gravity, Vec3(x.x, x.y, x.z) - foot);
     head = std::max(head, fall + 0.5 * squared_norm(Vec3(v.x, v.y, v.z)));
   }
   const Real radius = portable::cbrt(3 * liquid.mass() / (4 * pi * liquid.kind.density));
@@ -84,12 +85,13 @@ void set_pressures(Real head, const ExchangeState& exchange, Footprint& f) {
 }
 
 // What waits lies on the lower face of the sheet where that is the node's own (release.h).
-void add_waiting_film(const Liquid& liquid, const FaceMap& map, bool face_up, const ExchangeState& exchange,
-                      Footprint& f) {
+void add_waiting_film(const Liquid& liquid, const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
+                      const Vec3& gravity, const ExchangeState& exchange, Footprint& f) {
   for (Index k = 0; k < exchange.waiting_kg.size(); ++k) {
     const Real kg = exchange.waiting_kg[k];
     if (kg <= 0) continue;
     if (f.supply_of_node[k] == no_index) {
+      const bool face_up = dot(gravity, place.normal_at(network.node_centre(k))) <= 0;
       f.supply_of_node[k] = static_cast<Index>(f.supplies.size());
       f.supplies.push_back({.node = k, .from_below = face_up ? map.on_lower[k] != 0 : map.on_upper[k] == 0});
       f.supply_patch.push_back(no_index);
@@ -103,14 +105,14 @@ void add_waiting_film(const Liquid& liquid, const FaceMap& map, bool face_up, co
 
 }  // namespace
 
-void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
+void find_footprint(const Liquid& liquid, const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
                     const Vec3& gravity, const ExchangeState& exchange, Footprint& f) {
   clear(f, network.nodes());
   const Real dx = liquid.spacing(), reach_z = 0.5 * network.thickness + touch_distance(dx);
   const Real half_x = 0.5 * network.size_x, half_y = 0.5 * network.size_y;
   for (std::size_t i = 0; i < liquid.particles.size(); ++i) {
     const Float4& x = liquid.particles.position[i];
-    const Vec3 p = placement.to_sheet({x.x, x.y, x.z});
+    const Vec3 p = place.to_sheet({x.x, x.y, x.z});
     if (std::abs(p.z) > reach_z || std::abs(p.x) > half_x || std::abs(p.y) > half_y) continue;
     const std::size_t before = f.links.size();
     add_links(network, map, p, dx * dx, f);
@@ -122,7 +124,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Plac
     f.on_back.push_back(p.z < 0);
   }
   find_patches(liquid, dx * dx, f);
-  if (!f.empty()) set_pressures(total_head(liquid, placement, gravity), exchange, f);
+  if (!f.empty()) set_pressures(total_head(liquid, place, gravity), exchange, f);
   for (std::size_t p = 0; p < f.particle.size(); ++p) {
     const FootprintPatch& patch = f.patches[f.patch_of[p]];
     const Real left = liquid.particle_mass * std::max(1 - patch.owed_kg / patch.touching_kg, 0.0);
@@ -133,7 +135,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Plac
     f.supplies[s].wetted_share = std::min(f.supplies[s].wetted_share, 1.0);
     f.supplies[s].pressure = f.patches[f.supply_patch[s]].pressure;
   }
-  add_waiting_film(liquid, map, dot(gravity, placement.n) <= 0, exchange, f);
+  add_waiting_film(liquid, network, place, map, gravity, exchange, f);
 }
 
 }  // namespace imbibe

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "imbibe/core/types.h"
+#include "imbibe/coupling/embedding.h"
 #include "imbibe/coupling/exchange_state.h"
 #include "imbibe/coupling/face_map.h"
 #include "imbibe/fabric/network.h"
@@ -56,7 +57,7 @@ struct Footprint {
 };
 
 // Fills `footprint` (its memory is reused). Does not change any state.
-void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
+void find_footprint(const Liquid& liquid, const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
                     const Vec3& gravity, const ExchangeState& exchange, Footprint& footprint);
 
 // m; nearer than this to a face a particle touches it: the first layer of particles above the wall.

@@ -10,11 +10,11 @@ constexpr Real clear_spacings = 0.8;  // no particle is born nearer to another
 // The particles beside the two faces, in sheet coordinates, by the bins of the face map.
 class NearFaces {
  public:
-  NearFaces(const Liquid& liquid, const YarnNetwork& network, const Placement& placement, const FaceMap& map)
+  NearFaces(const Liquid& liquid, const YarnNetwork& network, const ClothPlace& cloth, const FaceMap& map)
       : map_(map), clearance_(clear_spacings * liquid.spacing()) {
     const Real reach = 0.5 * network.thickness + 2 * liquid.spacing();
     for (const Float4& x : liquid.particles.position) {
-      const Vec3 p = placement.to_sheet({x.x, x.y, x.z});
+      const Vec3 p = cloth.to_sheet({x.x, x.y, x.z});
       if (std::abs(p.z) <= reach) places_.push_back({bin_of(p.x, p.y), p});
     }
     std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.bin < b.bin; });
@@ -82,21 +82,21 @@ Real mouth_area(const YarnNetwork& network, Index node) {
   return pi * network.type_of_segment(node).radius * network.segment_length[node];
 }
 
-ReleaseReport release_particles(const YarnNetwork& network, const Placement& placement, const FaceMap& map,
+ReleaseReport release_particles(const YarnNetwork& network, const ClothPlace& cloth, const FaceMap& map,
                                 std::span<const ReleasedLiquid> released, const Vec3& gravity, const SolidAt& solid_at,
                                 ExchangeState& exchange, Liquid& liquid) {
   ReleaseReport report;
-  const bool upper_first = dot(gravity, placement.n) > 0;
+  const auto upper_first = [&](Index node) { return dot(gravity, cloth.normal_at(network.node_centre(node))) > 0; };
   // A node between other layers (its fibres swelled) gives off through the layer on the lower face.
   const auto at_face = [&](Index node) {
     if (map.on_upper[node] || map.on_lower[node]) return node;
     const std::size_t alike = network.is_pore(node) ? network.pores() : network.segments();
     const std::size_t per_layer = alike / static_cast<std::size_t>(network.layers);
-    const int layers_off = (upper_first ? 0 : network.layers - 1) - network.layer_of(node);
+    const int layers_off = (upper_first(node) ? 0 : network.layers - 1) - network.layer_of(node);
     return static_cast<Index>(static_cast<std::ptrdiff_t>(node) + layers_off * static_cast<std::ptrdiff_t>(per_layer));
   };
   // Liquid waits on the lower face, where the node has it.
-  const auto waits_above = [&](Index node) { return upper_first ? map.on_upper[node] != 0 : map.on_lower[node] == 0; };
+  const auto waits_above = [&](Index node) { return upper_first(node) ? map.on_upper[node] != 0 : map.on_lower[node] == 0; };
   for (const ReleasedLiquid& r : released) exchange.waiting_kg[at_face(r.node)] += r.kg;
   if (liquid.particle_mass <= 0) return report;  // a scene without free liquid: what comes out waits on the face
   const Real mass = liquid.particle_mass, dx = liquid.spacing(), density = liquid.kind.density;
@@ -114,24 +114,27 @@ ReleaseReport release_particles(const YarnNetwork& network, const Placement& pla
     momentum[k] += r.kg * release_speed(r.excess_pressure, density, r.flow, mouth_area(network, k));
     excess[k] = std::max(excess[k], r.excess_pressure);
   }
-  NearFaces near(liquid, network, placement, map);
-  const Real across = density * std::abs(dot(gravity, placement.n)) * network.thickness;  // Pa, from face to face
+  NearFaces near(liquid, network, cloth, map);
   for (const Index k : full) {
     const Vec3& centre = network.node_centre(k);
+    const Vec3 normal = cloth.normal_at(centre);
+    const Real across = density * std::abs(dot(gravity, normal)) * network.thickness;  // Pa, from face to face
     const bool above = waits_above(k);
     const Real present = waiting_near(map, centre, above, exchange);
     if (present < mass) continue;
     const auto place_at = [&](Real side) { return Vec3{centre.x, centre.y, side * (0.5 * network.thickness + 0.5 * dx)}; };
-    const auto closed = [&](Real side) { return solid_at && solid_at(placement.to_world(place_at(side))); };
+    const auto closed = [&](Real side) { return solid_at && solid_at(cloth.to_world(place_at(side))); };
     Real side = above ? 1 : -1;
     const bool has_other = map.on_upper[k] && map.on_lower[k];
     if (has_other && (closed(side) || (!near.is_free(place_at(side)) && excess[k] >= across))) side = -side;
-    const Vec3 place = place_at(side), world = placement.to_world(place);
+    const Vec3 place = place_at(side), world = cloth.to_world(place);
     if (!near.is_free(place) || closed(side)) continue;
-    const Vec3 velocity = (side * take_near(map, centre, above, mass / present, momentum, exchange) / mass) * placement.n;
+    Vec3 velocity = (side * take_near(map, centre, above, mass / present, momentum, exchange) / mass) * normal;
+    if (!cloth.is_flat()) velocity += cloth.velocity_at(centre);
     add_particle(liquid, world, velocity);
     near.add(place);
     ++report.particles;
+    report.places.push_back(place);
     report.kg += mass;
     report.momentum += mass * velocity;
   }

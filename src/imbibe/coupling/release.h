@@ -7,7 +7,8 @@
 //   dp   Pa     pressure of the node at the face above its opening pressure (wetting/transport.h)
 //   q    m3/s   flow out of the node; A m2 its mouth: the gap between the yarns, or half the surface of the segment
 // Torricelli, as far as the flow fills the mouth: most of dp is spent on friction in the throat, and u never exceeds what
-// continuity gives. A particle has the momentum of what it was made of, so it has no more energy than dp gave.
+// continuity gives. A particle has the momentum of what it was made of, so it has no more energy than dp gave. On a sheet
+// that moves it has the sheet's velocity besides.
 // Which face: the one that is lower, where the pressure reaches the opening first (by rho g t); the other one where a
 // solid closes the lower, or where liquid already hangs there and the pressure suffices above too.
 // Source: seed A section 5.1 (reborn with the speed that the pressure difference gives); the form is ours.
@@ -17,6 +18,7 @@
 #include <functional>
 #include <span>
 
+#include "imbibe/coupling/embedding.h"
 #include "imbibe/coupling/exchange_state.h"
 #include "imbibe/coupling/face_map.h"
 #include "imbibe/fabric/network.h"
@@ -29,6 +31,7 @@ struct ReleaseReport {
   std::size_t particles = 0;
   Real kg = 0;
   Vec3 momentum{};  // N s, given to the new particles; the sheet takes the opposite
+  std::vector<Vec3> places;  // m, in sheet coordinates, where each was born, in the order of the new particles
 };
 
 // The equation. 0 for dp <= 0.
@@ -42,7 +45,7 @@ using SolidAt = std::function<bool(const Vec3&)>;
 
 // Adds `released` to what waits and turns waiting mass into particles where that within reach of a node is a whole
 // particle and the place is free: no particle within 0.8 dx, no solid.
-ReleaseReport release_particles(const YarnNetwork& network, const Placement& placement, const FaceMap& map,
+ReleaseReport release_particles(const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
                                 std::span<const ReleasedLiquid> released, const Vec3& gravity, const SolidAt& solid_at,
                                 ExchangeState& exchange, Liquid& liquid);
 

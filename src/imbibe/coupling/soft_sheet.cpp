@@ -182,6 +182,26 @@ Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real 
   return at + gap * n;
 }
 
+std::size_t throw_back(SoftSheet& soft, SoftSheetScratch& scratch, Liquid& liquid, std::span<const Float4> before,
+                       Real gap, const ImpactParams& impact, std::uint64_t seed, std::uint64_t step) {
+  Particles& p = liquid.particles;
+  find_sheet_hits(scratch.surface, before.first(p.size()), p.position, scratch.hits, scratch.hit_tiles);
+  const auto store = [](Float4& f, const Vec3& v) {
+    f.x = static_cast<float>(v.x), f.y = static_cast<float>(v.y), f.z = static_cast<float>(v.z);
+  };
+  for (const SheetHit& hit : scratch.hits) {
+    const Index i = hit.particle;
+    const SurfacePoint& at = hit.crossing.at;
+    const Vec3 v = xyz(p.velocity[i]);
+    const Real inverse = inverse_mass_at(soft.sheet, scratch.held, at);
+    store(p.velocity[i], velocity_after_impact(v, velocity_at(soft.sheet, at), hit.crossing.normal, liquid.particle_mass,
+                                               inverse, impact, {seed, p.id[i], step}));
+    give_impulse(soft, scratch.held, at, liquid.particle_mass * (v - xyz(p.velocity[i])));
+    store(p.position[i], place_over(scratch.surface, hit.crossing, gap));
+  }
+  return scratch.hits.size();
+}
+
 Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
   const Sheet& sheet = soft.sheet;
   find_held(soft, scratch.held);
@@ -192,6 +212,7 @@ Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
   scratch.wall.inverse_mass = scratch.inverse_mass;
   scratch.wall.half_thickness = 0.5 * soft.cloth.hand.thickness;
   scratch.wall.impulse.assign(sheet.size(), Vec3{});
+  scratch.wall.pressing = 0;
   Wall wall;
   wall.two_sided = true;
   wall.sheet = &scratch.wall;

@@ -99,6 +99,11 @@ void find_sheet_hits(const MovingMesh& surface, std::span<const Float4> before, 
 // layer lies between. Returns its place.
 Vec3 place_over(const MovingMesh& surface, const MovingCrossing& crossing, Real gap);
 
+// Throws all particles back that crossed the sheet in its last step, onto the side they came from, `gap` m over it; the
+// sheet gets their impulse. Returns how many.
+std::size_t throw_back(SoftSheet& soft, SoftSheetScratch& scratch, Liquid& liquid, std::span<const Float4> before,
+                       Real gap, const ImpactParams& impact, std::uint64_t seed, std::uint64_t step);
+
 // A step of sheet and liquid:
 //   advance_sheet      the cloth's own step, under all forces but the liquid's
 //   sheet_as_wall      where it was at the start, with its mean velocity over the step, for the liquid's step of the same dt

@@ -12,24 +12,31 @@ Shape sheet_shape(const YarnNetwork& network, const Placement& placement) {
                                    along(placement.n, network.thickness)};
 }
 
+std::function<WallAngles(const Vec3&)> wet_angles(const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
+                                                  std::span<const float> saturation) {
+  return [&network, place, &map, saturation](const Vec3& world) {
+    const Vec3 p = place.to_sheet(world);
+    Real advancing = 0, receding = 0, weight = 0;
+    if (std::isfinite(p.z)) {
+      map.near(p.x, p.y, p.z >= 0, [&](Index k) {
+        const Vec3& c = network.node_centre(k);
+        const Real w = face_kernel(portable::hypot(p.x - c.x, p.y - c.y), map.reach);
+        advancing += w * cos_wet_face(map.cos_advancing[k], saturation[k]);
+        receding += w * cos_wet_face(map.cos_receding[k], saturation[k]);
+        weight += w;
+      });
+    }
+    if (weight <= 0) return WallAngles{map.cos_advancing.front(), map.cos_receding.front()};
+    return WallAngles{static_cast<float>(advancing / weight), static_cast<float>(receding / weight)};
+  };
+}
+
 Wall wet_wall(const Shape& shape, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
               std::span<const float> saturation) {
   Wall wall;
   wall.shape = &shape;
   wall.two_sided = true;
-  wall.angles_at = [&network, &placement, &map, saturation](const Vec3& world) {
-    const Vec3 p = placement.to_sheet(world);
-    Real advancing = 0, receding = 0, weight = 0;
-    map.near(p.x, p.y, p.z >= 0, [&](Index k) {
-      const Vec3& c = network.node_centre(k);
-      const Real w = face_kernel(portable::hypot(p.x - c.x, p.y - c.y), map.reach);
-      advancing += w * cos_wet_face(map.cos_advancing[k], saturation[k]);
-      receding += w * cos_wet_face(map.cos_receding[k], saturation[k]);
-      weight += w;
-    });
-    if (weight <= 0) return WallAngles{map.cos_advancing.front(), map.cos_receding.front()};
-    return WallAngles{static_cast<float>(advancing / weight), static_cast<float>(receding / weight)};
-  };
+  wall.angles_at = wet_angles(network, placement, map, saturation);
   return wall;
 }
 

@@ -10,8 +10,10 @@
 // Tested in tests/coupling/wet_wall_test.cpp.
 #pragma once
 
+#include <functional>
 #include <span>
 
+#include "imbibe/coupling/embedding.h"
 #include "imbibe/coupling/face_map.h"
 #include "imbibe/fabric/network.h"
 #include "imbibe/liquid/wall.h"
@@ -29,6 +31,10 @@ constexpr Real cos_wet_face(Real cos_theta, Real saturation) {
 
 // The slab of the sheet in the world. Its directions lie along x, y and z in any order; the scene reader refuses others.
 Shape sheet_shape(const YarnNetwork& network, const Placement& placement);
+
+// The angles of a cloth's faces by place in the world, for one step; everything must outlive it.
+std::function<WallAngles(const Vec3&)> wet_angles(const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
+                                                  std::span<const float> saturation);
 
 // A wall for one step; `shape`, `saturation` (per node) and the rest must outlive it.
 Wall wet_wall(const Shape& shape, const YarnNetwork& network, const Placement& placement, const FaceMap& map,

@@ -30,6 +30,7 @@ struct Fibre {
   Real diffusivity = 0;           // m2/s, water in the fibre substance, D_f
   GabIsotherm isotherm;           // adsorption
   Real desorption_offset_65 = 0;  // kg/kg, how far desorption lies above adsorption at 65 %
+  Real wet_softening = 0;         // 1, share of its stiffness lost at regain_saturated
   Real absorption_coefficient = 0;  // kg/(m2 s^0.5), typical in-plane A_w of a fabric of it (Kuenzel); 0 = none
 
   // Sorbed water at full swelling: max(regain at 100 % vapour, volume_swelling * rho_water / density).

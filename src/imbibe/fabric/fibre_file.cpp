@@ -41,6 +41,7 @@ const std::vector<Key>& keys() {
       {"receding_angle", "rad", 0, pi, true, [](FibreRecord& r) -> Real& { return r.fibre.receding_angle; }},
       {"diffusivity", "m2/s", 0, 1e-6, true, [](FibreRecord& r) -> Real& { return r.fibre.diffusivity; }},
       {"desorption_offset_65", "1", 0, 1, false, [](FibreRecord& r) -> Real& { return r.fibre.desorption_offset_65; }},
+      {"wet_softening", "1", 0, 0.95, false, [](FibreRecord& r) -> Real& { return r.fibre.wet_softening; }},
       {"absorption_coefficient", root_second_unit.data(), 0, 100, false,
        [](FibreRecord& r) -> Real& { return r.fibre.absorption_coefficient; }},
       {"packing", "1", 0.05, 1, false, [](FibreRecord& r) -> Real& { return r.staple_packing; }},

@@ -3,6 +3,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/io/run_folder.h"
+#include "imbibe/sim/measures.h"
 
 namespace imbibe {
 
@@ -36,7 +37,7 @@ PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& satu
   const std::size_t count = network.points.size();
   PolyData data;
   data.points.reserve(count);
-  for (const Vec3& p : network.points) data.points.push_back(Vec3f(textile.placement.to_world(p)));
+  for (const Vec3& p : points_in_world(textile)) data.points.push_back(Vec3f(p));
   std::vector<float> saturation, sorbed, liquid, regain;
   std::vector<std::int32_t> yarn, family, layer;
   for (std::vector<float>* values : {&saturation, &sorbed, &liquid, &regain}) values->reserve(count);
@@ -73,9 +74,10 @@ PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturat
   PolyData data;
   std::vector<float> saturation, liquid;
   std::vector<std::int32_t> layer;
+  const std::vector<Vec3> places = nodes_in_world(textile);
   for (std::size_t p = 0; p < network.pores(); ++p) {
     const std::size_t node = network.segments() + p;
-    data.points.push_back(Vec3f(textile.placement.to_world(network.pore_centre[p])));
+    data.points.push_back(Vec3f(places[node]));
     saturation.push_back(static_cast<float>(saturations[node]));
     liquid.push_back(static_cast<float>(textile.contents.liquid_kg[node]));
     if (network.layers > 1) layer.push_back(network.layer_of(node));

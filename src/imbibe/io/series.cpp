@@ -37,7 +37,11 @@ SeriesRow series_row(const World& world, const StepReport& last_step, const Meas
     row.bounces += exchange.bounces;
     for (const Real kg : exchange.waiting_kg) row.waiting_kg += kg;
   }
-  if (!world.cell_cloths.empty()) row.lowest_cloth_m = unlimited;
+  if (any_soft_sheet(world)) row.lowest_cloth_m = unlimited;
+  for (const Textile& textile : world.textiles) {
+    if (!textile.cloth) continue;
+    for (const Vec3& x : textile.cloth->soft.sheet.position) row.lowest_cloth_m = std::min(row.lowest_cloth_m, x.z);
+  }
   for (const CellCloth& cloth : world.cell_cloths) {
     const CellClothMeasures m = measure(cloth, params);
     row.wet_area_m2 += m.wet_area;

@@ -69,7 +69,11 @@ void SheetContacts::add_diagonal(std::vector<float>& factor) const {
 }
 
 void SheetContacts::book(std::span<const float> k, Real dt) {
-  for (SheetFoot* foot : feet_) foot->impulse += (particle_mass_ * dt * 2 * static_cast<Real>(k[foot->particle])) * Vec3(foot->push);
+  for (SheetFoot* foot : feet_) {
+    const Real strength = particle_mass_ * dt * 2 * static_cast<Real>(k[foot->particle]);
+    foot->impulse += strength * Vec3(foot->push);
+    walls_[foot->wall]->pressing += strength * norm(Vec3(foot->push));
+  }
 }
 
 }  // namespace imbibe

@@ -98,8 +98,9 @@ void add_textile(const Scene& scene, std::size_t i, const Library& library, Worl
       world.cell_cloths.push_back(build_cell_cloth(scene, i));
       return;
     }
-    if (spec.sheet.is_soft())
-      throw InputError({Problem{.key = key + ".sheet", .message = "a soft sheet takes `wetting: cells` in this version"}});
+    if (spec.sheet.soft && spec.sheet.is_soft() && spec.sheet.soft->mesh)
+      throw InputError({Problem{.key = key + ".sheet.soft.mesh",
+                                .message = "a sheet from a mesh takes `wetting: cells`: yarns are woven into rectangles only"}});
     auto fabric = std::make_shared<Fabric>(build_fabric(spec.fabric, library.fibres, key));
     set_contact_angles(spec, *fabric);
     Textile textile;
@@ -153,6 +154,7 @@ void add_wetting(const Scene& scene, std::size_t i, std::size_t index, World& wo
     textile.contact = scene.textiles[i].contact;
     textile.yarn_boxes = std::make_shared<const YarnContactIndex>(build_contact_index(network));
     textile.exchange.waiting_kg.assign(network.nodes(), 0);
+    if (scene.textiles[i].sheet.is_soft()) textile.cloth = build_network_cloth(scene, i, textile, world.air);
   } catch (const InputError& error) {
     add_at(scene, error, problems, fmt::format("textiles[{}].wetting", i));
   }

@@ -151,10 +151,14 @@ void check_pipe_keys(const Scene& scene, std::vector<Problem>& problems) {
   }
 }
 
-SoftSheet build_soft_sheet(const Scene& scene, std::size_t i) {
-  const TextileSpec& spec = scene.textiles[i];
+SoftSheet build_soft_sheet(const Scene& scene, std::size_t i, const Fabric* fabric) {
+  TextileSpec spec = scene.textiles[i];
   const SoftSheetSpec soft = spec.sheet.soft.value_or(SoftSheetSpec{});
   SoftSheet result;
+  if (fabric != nullptr) {
+    spec.fabric.size = {fabric->network.size_x, fabric->network.size_y};
+    spec.fabric.areal_mass = fabric->numbers.areal_mass;
+  }
   result.cloth = soft.cloth;
   result.cloth.hand.areal_mass = areal_mass_of(spec, soft);
   const std::string key = key_of(i) + (spec.sheet.soft ? ".sheet.soft" : "");
@@ -179,7 +183,20 @@ SoftSheet build_soft_sheet(const Scene& scene, std::size_t i) {
   }
   if (!problems.empty()) throw InputError(std::move(problems));
   if (spec.contact_angle) result.contact_angle = *spec.contact_angle;
+  if (fabric != nullptr && !scene.places.contains(key_of(i) + ".sheet.soft.cloth.hand.thickness"))
+    result.cloth.hand.thickness = fabric->network.thickness;
   return result;
+}
+
+NetworkCloth build_network_cloth(const Scene& scene, std::size_t i, const Textile& built, const Air& air) {
+  const TextileSpec& spec = scene.textiles[i];
+  NetworkCloth cloth =
+      make_network_cloth(build_soft_sheet(scene, i, built.fabric.get()), built.fabric->network, *built.model, air,
+                         spec.sheet.soft ? spec.sheet.soft->wet : WetClothParams{});
+  std::vector<std::uint8_t> held;
+  find_held(cloth.soft, held);
+  weigh(cloth, held, built.fabric->network, *built.model, built.contents, built.exchange);
+  return cloth;
 }
 
 CellCloth build_cell_cloth(const Scene& scene, std::size_t i) {

@@ -18,8 +18,11 @@ void check_cloth_keys(const Scene& scene, std::size_t textile, std::vector<Probl
 void check_pipe_keys(const Scene& scene, std::vector<Problem>& problems);
 
 // The soft (or, with cells, fixed) sheet of a textile. Throws InputError; keys start with "textiles[i]".
-SoftSheet build_soft_sheet(const Scene& scene, std::size_t textile);
+// Under a woven fabric the sheet has its size, mass and thickness.
+SoftSheet build_soft_sheet(const Scene& scene, std::size_t textile, const Fabric* fabric = nullptr);
 CellCloth build_cell_cloth(const Scene& scene, std::size_t textile);
+// The soft sheet that the network of a built textile rides on.
+NetworkCloth build_network_cloth(const Scene& scene, std::size_t textile, const Textile& built, const Air& air);
 
 // Bore and place of a pipe, and its mesh to be drawn. Throws InputError when the file cannot be read.
 struct PipeGeometry {

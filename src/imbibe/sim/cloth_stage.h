@@ -8,11 +8,19 @@ namespace imbibe {
 
 // Whether a soft sheet is in motion (those at rest or fixed are not stepped).
 bool any_cloth_moves(const World& world);
+bool any_network_cloth_moves(const World& world);
 
-// s, the longest step that keeps liquid and cloth in touch; infinity without cell cloths.
+// s, the longest step that keeps liquid and cloth in touch; infinity without soft sheets.
 Real longest_cloth_step(const World& world);
 
-// The soft sheets as walls of the liquid's next step, after those of solids and fixed textiles.
+// Surfaces and frames of the soft sheets as they lie now. Before anything asks for places on them.
+void ready_cloths(const World& world, StepScratch& scratch);
+
+// The place of a textile, flat or bent; for as long as world and scratch stay as they are.
+ClothPlace place_of(const World& world, std::size_t textile, const StepScratch& scratch);
+SoftSheetScratch& sheet_of(const World& world, std::size_t textile, StepScratch& scratch);
+
+// The cell cloths as walls of the liquid's next step, after those of solids and textiles.
 void add_sheet_walls(const World& world, StepScratch& scratch);
 
 // The cloths' own step of dt, before the liquid's.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imbibe/core/error.h"
+#include "imbibe/core/parallel.h"
 
 namespace imbibe {
 
@@ -98,6 +99,31 @@ CellClothMeasures measure(const CellCloth& cloth, const MeasureParams& params) {
   m.capacity_volume = capacity / 1000;
   for (const Vec3& x : cloth.soft.sheet.position) m.lowest = std::min(m.lowest, x.z);
   return m;
+}
+
+namespace {
+
+template <class Place>
+std::vector<Vec3> in_world(const Textile& textile, std::size_t count, Place&& flat_place) {
+  std::vector<Vec3> places(count);
+  EmbeddingScratch normals;
+  if (textile.cloth) update_normals(normals, textile.cloth->soft.sheet);
+  const ClothPlace place =
+      textile.cloth ? ClothPlace(*textile.cloth->embedding, textile.cloth->soft.sheet, normals) : ClothPlace(textile.placement);
+  parallel_for(count, [&](std::size_t i) { places[i] = place.to_world(flat_place(i)); });
+  return places;
+}
+
+}  // namespace
+
+std::vector<Vec3> points_in_world(const Textile& textile) {
+  const std::vector<Vec3>& points = textile.fabric->network.points;
+  return in_world(textile, points.size(), [&](std::size_t i) { return points[i]; });
+}
+
+std::vector<Vec3> nodes_in_world(const Textile& textile) {
+  const YarnNetwork& network = textile.fabric->network;
+  return in_world(textile, network.nodes(), [&](std::size_t i) { return network.node_centre(i); });
 }
 
 }  // namespace imbibe

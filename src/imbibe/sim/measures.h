@@ -55,4 +55,8 @@ CellClothMeasures measure(const CellCloth& cloth, const MeasureParams& params = 
 // Saturation of every node, as above.
 std::vector<Real> node_saturations(const Textile& textile, const Air& air);
 
+// Where the centre lines' points (network.points) and the nodes (segments, then pores) are in the world now, m.
+std::vector<Vec3> points_in_world(const Textile& textile);
+std::vector<Vec3> nodes_in_world(const Textile& textile);
+
 }  // namespace imbibe

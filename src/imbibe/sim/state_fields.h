@@ -106,6 +106,10 @@ void visit_state(Visitor& v, AnyWorld& world) {
     v.value("absorbed_particles", textile.exchange.absorbed_particles);
     v.value("released_particles", textile.exchange.released_particles);
     v.value("bounces", textile.exchange.bounces);
+    if (textile.cloth) {
+      visit_soft_sheet(v, textile.cloth->soft, "textiles/" + std::to_string(i) + "/sheet");
+      v.value("borrowed_kg", textile.cloth->borrowed_kg);
+    }
     for (std::size_t r = 0; r < textile.reservoirs.size(); ++r) {
       v.group("textiles/" + std::to_string(i) + "/reservoirs/" + std::to_string(r));
       v.value("supplied_kg", textile.reservoirs[r].supplied_kg);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
@@ -22,6 +23,7 @@ namespace {
 // than a particle. It cuts its own steps where it must (pores fill in some 0.3 ms at first).
 constexpr Real interval_with_moving_liquid = 2e-3;           // s
 constexpr Real longest_interval_with_resting_liquid = 5e-2;  // s
+constexpr Real interval_with_moving_cloth = 2e-2;            // s, while no liquid moves: heights change by millimetres
 constexpr Real due_slack = 1e-9;                             // s, a drop this near is due: times are rounded sums
 constexpr Real force_averaging_time = 2e-3;                  // s, about ten SPH steps and more
 
@@ -58,7 +60,7 @@ void build_walls(const World& world, StepScratch& scratch) {
     scratch.walls.push_back(std::move(wall));
   }
   scratch.sheets.clear();
-  for (const Textile& textile : world.textiles)
+  for (const Textile& textile : world.textiles)  // of soft ones not used
     scratch.sheets.push_back(sheet_shape(textile.fabric->network, textile.placement));
   if (scratch.saturation.size() != world.textiles.size()) scratch.saturation.assign(world.textiles.size(), {});
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
@@ -68,20 +70,29 @@ void build_walls(const World& world, StepScratch& scratch) {
       s.resize(textile.fabric->network.nodes());
       show_saturations(textile, world.air, s);
     }
+    if (textile.cloth) {
+      SoftSheetScratch& own = sheet_of(world, t, scratch);
+      Wall wall = sheet_as_wall(textile.cloth->soft, own);
+      own.wall.half_thickness = 0.5 * textile.fabric->network.thickness;
+      wall.angles_at = wet_angles(textile.fabric->network, place_of(world, t, scratch), *textile.faces, s);
+      scratch.walls.push_back(std::move(wall));
+      continue;
+    }
     scratch.walls.push_back(
         wet_wall(scratch.sheets[t], textile.fabric->network, textile.placement, *textile.faces, s));
   }
 }
 
-// The sheets are held: what the liquid gives them is booked; the part by pressure is averaged for the uptake law (the pull
-// of a contact line lifts the sheet but does not hold liquid off its pores).
-void book_impulses(World& world, const LiquidStepReport& liquid) {
+// What the liquid gives fixed sheets is booked (soft ones take it themselves); the part by pressure is averaged for the
+// uptake law (the pull of a contact line lifts the sheet but does not hold liquid off its pores).
+void book_impulses(World& world, const LiquidStepReport& liquid, StepScratch& scratch) {
   const Real blend = std::min(1.0, liquid.step_s / force_averaging_time);
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
     Textile& textile = world.textiles[t];
     const std::size_t wall = world.solids.size() + t;
-    textile.exchange.impulse += liquid.wall_impulse[wall];
-    const Real force = -dot(liquid.wall_pressure_impulse[wall], textile.placement.n) / liquid.step_s;
+    if (!textile.cloth) textile.exchange.impulse += liquid.wall_impulse[wall];
+    const Real force = textile.cloth ? sheet_of(world, t, scratch).wall.pressing / liquid.step_s
+                                     : -dot(liquid.wall_pressure_impulse[wall], textile.placement.n) / liquid.step_s;
     textile.exchange.normal_force += blend * (force - textile.exchange.normal_force);
   }
 }
@@ -120,7 +131,7 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   } catch (const NumericalError& error) {  // the liquid knows neither the world's time nor its step
     throw NumericalError(world.time, world.step, error.stage, error.where + ": " + lost_particle(world.liquid.particles));
   }
-  book_impulses(world, liquid);
+  book_impulses(world, liquid, scratch);
   report.liquid_moved = true;
   report.step_s = liquid.step_s;
   report.step_bound = liquid.bound;
@@ -133,16 +144,38 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   report.liquid_wall_s = seconds_since(start);
 }
 
+// A bounce off a yarn of a soft sheet, whose nodes are as light as a particle may be.
+void bounce_off_moving_yarn(Textile& textile, const ClothPlace& place, const ParticleHit& hit, const SoftSheetScratch& own,
+                            Real mass, Float4& velocity) {
+  SoftSheet& soft = textile.cloth->soft;
+  const SurfacePoint at = place.surface_point(hit.sheet_point);
+  const Vec3 before(velocity.x, velocity.y, velocity.z), sheet_v = velocity_at(soft.sheet, at);
+  const Bounce held = hit.hit.resting ? rest(before - sheet_v, mass)
+                                      : bounce(before - sheet_v, hit.hit.normal, mass, textile.contact.restitution,
+                                               textile.contact.friction);
+  const Real inverse = inverse_mass_at(soft.sheet, own.held, at);
+  const Vec3 after = before - held.impulse_on_textile / (mass * (1 + mass * inverse));
+  velocity.x = static_cast<float>(after.x), velocity.y = static_cast<float>(after.y), velocity.z = static_cast<float>(after.z);
+  give_impulse(soft, own.held, at, mass * (before - Vec3(velocity.x, velocity.y, velocity.z)));
+  ++textile.exchange.bounces;
+}
+
 // Swept contact (seed A 5.1): a particle whose predicted path of the next step enters a yarn bounces now, so nothing
 // tunnels at any speed. The slab wall of the sheet holds slow liquid off already; this is for what is too fast for it.
 void bounce_off_yarns(World& world, StepScratch& scratch, StepReport& report) {
   Particles& p = world.liquid.particles;
-  for (Textile& textile : world.textiles) {
-    find_hits(*textile.yarn_boxes, textile.fabric->network, textile.placement, p.position, p.velocity, report.step_s, 0,
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    Textile& textile = world.textiles[t];
+    const ClothPlace place = place_of(world, t, scratch);
+    find_hits(*textile.yarn_boxes, textile.fabric->network, place, p.position, p.velocity, report.step_s, 0,
               textile.contact, scratch.hits, scratch.contact, &report.contact);
     for (const ParticleHit& hit : scratch.hits) {
       Float4& v = p.velocity[hit.particle];
       const Vec3 before(v.x, v.y, v.z);
+      if (textile.cloth) {
+        bounce_off_moving_yarn(textile, place, hit, sheet_of(world, t, scratch), world.liquid.particle_mass, v);
+        continue;
+      }
       const Bounce after =
           hit.hit.resting ? rest(before, world.liquid.particle_mass)
                           : bounce(before, hit.hit.normal, world.liquid.particle_mass, textile.contact.restitution,
@@ -158,12 +191,40 @@ void bounce_off_yarns(World& world, StepScratch& scratch, StepReport& report) {
   }
 }
 
+Real owed(const Liquid& liquid) {
+  return std::accumulate(liquid.particles.owed_kg.begin(), liquid.particles.owed_kg.end(), Real{0});
+}
+
+// Particles that the network has taken whole join its sheet with their momentum, where they were.
+void join_cloth(const Liquid& liquid, const Footprint& footprint, std::span<const std::uint8_t> dead,
+                const ClothPlace& place, const SoftSheetScratch& own, SoftSheet& soft) {
+  for (const Index i : footprint.particle) {
+    if (!dead[i]) continue;
+    const Float4 &x = liquid.particles.position[i], &v = liquid.particles.velocity[i];
+    join_sheet(soft, own.held, place.surface_point(place.to_sheet({x.x, x.y, x.z})), liquid.particle_mass, {v.x, v.y, v.z});
+  }
+}
+
+// The newest particles came out of the sheet.
+MassLeft leave_cloth(const Liquid& liquid, const ReleaseReport& released, const ClothPlace& place,
+                     const SoftSheetScratch& own, SoftSheet& soft) {
+  MassLeft left;
+  const std::size_t first = liquid.particles.size() - released.particles;
+  for (std::size_t i = 0; i < released.particles; ++i) {
+    const Float4& v = liquid.particles.velocity[first + i];
+    const Vec3& centre = released.places[i];
+    leave_sheet(soft, own.held, place.surface_point(centre), liquid.particle_mass, {v.x, v.y, v.z}, left);
+  }
+  return left;
+}
+
 // Textile step of dt: supply by the liquid on the faces, the network, then whole particles die or are born.
 void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, StepReport& report, Real& next_interval) {
   Textile& textile = world.textiles[index];
   const YarnNetwork& network = textile.fabric->network;
+  const ClothPlace place = place_of(world, index, scratch);
   Footprint& footprint = scratch.footprint;
-  find_footprint(world.liquid, network, textile.placement, *textile.faces, world.gravity, textile.exchange, footprint);
+  find_footprint(world.liquid, network, place, *textile.faces, world.gravity, textile.exchange, footprint);
   // Taken from `world.time`, the beginning of the interval or (moving liquid) a time within it: step() lands on the
   // times at which reservoirs change.
   scratch.supplies = footprint.supplies;
@@ -171,10 +232,15 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   scratch.taken_kg.assign(scratch.supplies.size(), 0);
   const Vec3 gravity{dot(world.gravity, textile.placement.u), dot(world.gravity, textile.placement.v),
                      dot(world.gravity, textile.placement.n)};
+  GravityField bent;
+  if (textile.cloth) {
+    update(scratch.embeddings[index], *textile.cloth->embedding, textile.cloth->soft.sheet, network, world.gravity);
+    bent = scratch.embeddings[index].gravity();
+  }
   TextileScratch& own = scratch.textiles[index];
   if (own.model != textile.model) own = {textile.model, {}};
   const WettingReport wetting = step_wetting(*textile.model, textile.contents, scratch.supplies, scratch.taken_kg,
-                                             world.air, gravity, dt, own.wetting);
+                                             world.air, gravity, dt, own.wetting, textile.cloth ? &bent : nullptr);
   report.wetting_iterations += wetting.newton_iterations;
   if (!wetting.converged)
     throw NumericalError(world.time, world.step, "wetting",
@@ -186,15 +252,25 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   world.ledger.supplied_kg +=
       book_supplied(textile.reservoirs, world.time, scratch.taken_kg, footprint.supplies.size());
   scratch.taken_kg.resize(footprint.supplies.size());
+  const Real owed_before = owed(world.liquid);
   book_taken(footprint, scratch.taken_kg, world.liquid.particles, textile.exchange);
   scratch.dead.assign(world.liquid.particles.size(), 0);
   report.absorbed += absorb_particles(world.liquid, footprint, textile.exchange, scratch.dead).particles;
+  if (textile.cloth) {
+    textile.cloth->borrowed_kg += owed(world.liquid) - owed_before;
+    join_cloth(world.liquid, footprint, scratch.dead, place, sheet_of(world, index, scratch), textile.cloth->soft);
+  }
   remove_particles(world.liquid.particles, scratch.dead);
   const ReleaseReport released =
-      release_particles(network, textile.placement, *textile.faces, wetting.released, world.gravity,
-                        [&](const Vec3& place) { return solid_at(world, index, place); }, textile.exchange, world.liquid);
+      release_particles(network, place, *textile.faces, wetting.released, world.gravity,
+                        [&](const Vec3& at) { return solid_at(world, index, at); }, textile.exchange, world.liquid);
   report.released += released.particles;
   if (released.particles > 0) world.pace.resting = false;
+  if (textile.cloth) {
+    const SoftSheetScratch& sheet = sheet_of(world, index, scratch);
+    const MassLeft left = leave_cloth(world.liquid, released, place, sheet, textile.cloth->soft);
+    weigh(*textile.cloth, sheet.held, network, *textile.model, textile.contents, textile.exchange, left);
+  }
   if (index >= scratch.saturation.size()) return;
   show_saturations(textile, world.air, scratch.saturation[index]);
   const auto& shown = scratch.saturation[index];
@@ -254,6 +330,7 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
   Pace& pace = world.pace;
   const Real remaining = options.until - world.time;
   IMBIBE_ASSERT(remaining > 0);
+  if (any_soft_sheet(world)) ready_cloths(world, scratch);
   const Real longest = std::min(remaining, options.max_step);
   if (next_drop(world) < world.time + due_slack) emit_sources(world, report);
   // A drop is born at its own time: no step passes over it. One that waits for its place tries again at every step.
@@ -268,7 +345,7 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     const Real interval = textile_interval(world, true);
     if (!world.textiles.empty()) max_step = std::min(max_step, std::max(interval - pace.since_wetting, 1e-6));
     max_step = std::min(max_step, longest_cloth_step(world));
-    if (!world.cell_cloths.empty()) {  // cloth and liquid make the same step
+    if (any_soft_sheet(world)) {  // cloth and liquid make the same step
       max_step = std::min(max_step, liquid_step_bound(world.liquid, world.liquid_params, world.gravity).step_s);
       if (max_step > 0) advance_cloths(world, max_step, scratch, report);
     }
@@ -281,13 +358,18 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     leave(world, scratch, report);
     if (options.rest_allowed && !any_cloth_moves(world)) judge_rest(world, scratch.liquid.fields);
   } else {
-    if (pace.since_wetting > 0 && !world.textiles.empty()) exchange_all(world, pace.since_wetting, scratch, report);
+    const bool cloth_moves = any_network_cloth_moves(world);
+    if (pace.since_wetting > 0 && !world.textiles.empty() && !cloth_moves)
+      exchange_all(world, pace.since_wetting, scratch, report);
+    const Real waiting = cloth_moves ? pace.since_wetting : 0;
     report.step_s = world.textiles.empty() ? allowed : std::min(allowed, textile_interval(world, false));
     report.step_bound = report.step_s < allowed ? "wetting" : allowed < longest ? "drop" : "until";
     if (longest_cloth_step(world) < report.step_s) report.step_s = longest_cloth_step(world), report.step_bound = "cloth";
     advance_cloths(world, report.step_s, scratch, report);
     meet_cloths(world, report.step_s, scratch, report);
-    if (!world.textiles.empty()) exchange_all(world, report.step_s, scratch, report);
+    pace.since_wetting = report.step_s + waiting;
+    if (!world.textiles.empty() && (!any_network_cloth_moves(world) || pace.since_wetting >= interval_with_moving_cloth))
+      exchange_all(world, pace.since_wetting, scratch, report);
     if (pace.resting) wake_when_changed(world);
   }
   if (!(report.step_s >= options.min_step) && report.step_s < remaining * (1 - 1e-12))

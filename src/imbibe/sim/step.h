@@ -58,7 +58,8 @@ struct StepScratch {
   std::vector<std::uint8_t> dead;
   std::vector<ParticleHit> hits;
   ContactScratch contact;
-  std::vector<SoftSheetScratch> sheets_in_motion;  // of the cell cloths, in their order
+  std::vector<SoftSheetScratch> sheets_in_motion;  // of the cell cloths, then of the textiles (empty for fixed ones)
+  std::vector<EmbeddingScratch> embeddings;        // of the textiles
 };
 
 // Emits what the sources owe at the world's time; step() does it too. For showing a world before its first step.

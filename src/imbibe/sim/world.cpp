@@ -1,8 +1,14 @@
 #include "imbibe/sim/world.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace imbibe {
+
+bool any_soft_sheet(const World& world) {
+  return !world.cell_cloths.empty() || std::any_of(world.textiles.begin(), world.textiles.end(),
+                                                   [](const Textile& textile) { return textile.cloth.has_value(); });
+}
 
 Real MassBalance::error() const {
   const Real before = initial + supplied;

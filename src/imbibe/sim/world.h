@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "imbibe/coupling/contact.h"
 #include "imbibe/coupling/exchange_state.h"
 #include "imbibe/coupling/face_map.h"
+#include "imbibe/coupling/network_cloth.h"
 #include "imbibe/coupling/reservoir.h"
 #include "imbibe/fabric/fabric.h"
 #include "imbibe/geometry/shapes.h"
@@ -47,6 +49,7 @@ struct Textile {
   std::vector<Reservoir> reservoirs;
   Contents contents;
   ExchangeState exchange;
+  std::optional<NetworkCloth> cloth;          // a soft sheet that the network rides on; `placement`: where it was flat
 };
 
 // How the two clocks go together: SPH steps (1e-5 - 1e-3 s) run inside textile steps, and stop while the liquid rests.
@@ -88,6 +91,9 @@ struct World {
   Pace pace;
   Bounds domain;            // a particle outside is removed and counted in left_kg
 };
+
+// Whether any cloth is a soft sheet (or a fixed one of cells).
+bool any_soft_sheet(const World& world);
 
 // The masses of series.csv at one instant, kg (docs/run_folder.md). Sums in fixed order.
 struct MassBalance {

@@ -12,6 +12,7 @@ void add_textile(DrawnYarns& yarns, const Textile& textile, const Air& air) {
   const YarnNetwork& network = textile.fabric->network;
   const std::vector<Real> saturations = node_saturations(textile, air);
   const auto per_segment = static_cast<std::size_t>(network.points_per_segment);
+  const std::vector<Vec3> places = points_in_world(textile);
   std::vector<Vec3f> points;
   std::vector<float> values;
   for (std::size_t y = 0; y < network.yarn_family.size(); ++y) {
@@ -19,7 +20,7 @@ void add_textile(DrawnYarns& yarns, const Textile& textile, const Air& air) {
     const std::size_t first = network.yarn_first_segment[y], segments = network.yarn_first_segment[y + 1] - first;
     points.clear(), values.clear();
     for (std::size_t i = first_point; i < end_point; ++i) {
-      points.emplace_back(textile.placement.to_world(network.points[i]));
+      points.emplace_back(places[i]);
       // The last point ends the last segment: as in the run's files.
       const std::size_t segment = first + std::min((i - first_point) / per_segment, segments - 1);
       values.push_back(static_cast<float>(saturations[segment]));

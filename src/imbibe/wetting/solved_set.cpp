@@ -37,11 +37,12 @@ Real effective_entry(const WettingModel& m, const Work& w, Index local) {
 }
 
 // The weight of the column from a node down to the lower of `faces`, Pa; a node without one gives off nothing.
-Real face_head(const WettingModel& m, Index node, std::uint8_t faces, const Vec3& gravity) {
+// across: gravity along the face's normal there, m/s2.
+Real face_head(const WettingModel& m, Index node, std::uint8_t faces, Real across) {
   const Real half = 0.5 * m.stack_thickness, z = m.centre[node].z;
   Real most = -std::numeric_limits<Real>::infinity();
-  if (faces & upper_face) most = gravity.z * (half - z);
-  if (faces & lower_face) most = std::max(most, gravity.z * (-half - z));
+  if (faces & upper_face) most = across * (half - z);
+  if (faces & lower_face) most = std::max(most, across * (-half - z));
   return faces == 0 ? 0 : m.liquid.density * most;
 }
 
@@ -52,14 +53,14 @@ void find_release_faces(const TransportInput& input, Work& w) {
   parallel_for(w.active.size(), [&](std::size_t i) {
     const Index node = w.active[i];
     w.face_share[i] = 1;
-    w.face_head[i] = face_head(m, node, m.faces[node], input.gravity);
+    w.face_head[i] = face_head(m, node, m.faces[node], input.across(node));
   }, transport_tile);
   for (const FaceSupply& supply : input.supplies) {
     const Index i = w.local_of[supply.node];
     if (i == no_index || !(supply.wetted_share > 0)) continue;
     const std::uint8_t covered = supply.from_below ? lower_face : upper_face;
     const auto other = static_cast<std::uint8_t>(m.faces[supply.node] & ~covered);
-    if (other != 0) w.face_head[i] = face_head(m, supply.node, other, input.gravity);
+    if (other != 0) w.face_head[i] = face_head(m, supply.node, other, input.across(supply.node));
     else w.face_share[i] = 1 - std::min<Real>(1, supply.wetted_share);
   }
 }
@@ -213,7 +214,8 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
     auto& local = w.edges[e];
     const WettingEdge& edge = m.edges[local.edge];
     local.factor = edge.conductance;
-    local.head = dot(weight, edge.offset);
+    local.head = input.field ? m.liquid.density * (input.field->potential[edge.b] - input.field->potential[edge.a])
+                             : dot(weight, edge.offset);
     const bool between_layers = std::abs(edge.offset.z) > 0.5 * m.thickness;
     if (edge.kind == EdgeKind::pore_pore)
       local.entry = between_layers ? valve_opening(m, w, edge, local.a, local.b) : edge.valve;

@@ -30,7 +30,9 @@ struct TransportInput {
   std::span<const FaceSupply> supplies;
   std::span<const Real> available_kg;  // per supply, left in this call
   Vec3 gravity{};
+  const GravityField* field = nullptr;  // in place of `gravity`
   Real dt = 0;
+  Real across(Index node) const { return field ? field->across[node] : gravity.z; }
 };
 
 struct TransportResult {

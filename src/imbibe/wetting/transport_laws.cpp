@@ -92,7 +92,7 @@ Sloped pore_supply(const TransportInput& input, const Work& w, Index local, cons
   const Real filled = std::clamp<Real>(0.5 * (s + w.old_saturation[local]), 1e-6, 1);
   const Real conductance = tube_conductance(m.pore_throat[pore], m.liquid.viscosity, filled * m.thickness);
   // The meniscus stands at s t; a pore fed from below lifts its column.
-  const Real along = (supply.from_below ? 1 : -1) * input.gravity.z * m.liquid.density * m.thickness;
+  const Real along = (supply.from_below ? 1 : -1) * input.across(supply.node) * m.liquid.density * m.thickness;
   const Real column = std::min<Real>(s, 1) * along;
   const bool full = s > 1;
   const Real drive = supply.pressure + column - (full ? p : -entry);

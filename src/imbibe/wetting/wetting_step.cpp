@@ -89,14 +89,15 @@ WettingScratch::WettingScratch(WettingScratch&&) noexcept = default;
 WettingScratch& WettingScratch::operator=(WettingScratch&&) noexcept = default;
 
 WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
-                           std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt) {
+                           std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt,
+                           const GravityField* field) {
   WettingScratch scratch;
-  return step_wetting(model, contents, supplies, taken_kg, air, gravity, dt, scratch);
+  return step_wetting(model, contents, supplies, taken_kg, air, gravity, dt, scratch, field);
 }
 
 WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
                            std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt,
-                           WettingScratch& scratch) {
+                           WettingScratch& scratch, const GravityField* field) {
   IMBIBE_ASSERT(taken_kg.size() == supplies.size());
   WettingReport report;
   std::fill(taken_kg.begin(), taken_kg.end(), 0);
@@ -120,7 +121,7 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
     saved = contents;
     const std::size_t released_before = report.released.size();
     const TransportInput input{.model = &model, .supplies = supplies, .available_kg = available, .gravity = gravity,
-                               .dt = now};
+                               .field = field, .dt = now};
     const Substep substep = attempt(input, contents, air, work, report.released);
     report.newton_iterations += substep.transport.newton_iterations;
     report.linear_iterations += substep.transport.linear_iterations;

@@ -24,6 +24,12 @@ struct ReleasedLiquid {
   Real flow = 0;             // m3/s that this excess drives through the mouth
 };
 
+// Gravity where the sheet is not flat, per node: the potential g.x of its place in the world (m2/s2), and the part of g
+// along the face's normal there (m/s2).
+struct GravityField {
+  std::span<const Real> potential, across;
+};
+
 struct WettingReport {
   Real advanced_s = 0;          // how far it came; = dt unless `converged` is false
   bool converged = true;
@@ -50,12 +56,14 @@ struct WettingScratch {
 };
 
 // Advances `contents` by dt. taken_kg[i] (same length as supplies) is set to what supply i gave, >= 0, or was given
-// back, < 0; it never exceeds available_kg. `gravity` in sheet coordinates, m/s2.
+// back, < 0; it never exceeds available_kg. `gravity` in sheet coordinates, m/s2;
+// `field`, when given, takes its place.
 WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
                            std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt,
-                           WettingScratch& scratch);
+                           WettingScratch& scratch, const GravityField* field = nullptr);
 WettingReport step_wetting(const WettingModel& model, Contents& contents, std::span<const FaceSupply> supplies,
-                           std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt);
+                           std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt,
+                           const GravityField* field = nullptr);
 
 // A first step when no report is at hand: no node changes its saturation by more than about 0.3, within [1e-4, 300] s.
 Real suggested_wetting_step(const WettingModel& model, const Contents& contents, const Air& air, const Vec3& gravity);
