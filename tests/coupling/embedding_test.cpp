@@ -202,7 +202,7 @@ TEST(Embedding, WhatJoinsMovesAboutAndLeavesKeepsMomentum) {
   Sheet& sheet = soft.sheet;
   for (std::size_t n = 0; n < sheet.size(); ++n) sheet.velocity[n] = 0.3 * random_direction({7, n, 0}, 0);
   std::vector<std::uint8_t> held;
-  find_held(sheet, held);
+  find_held(soft, held);
   for (std::size_t n = 0; n < sheet.size(); ++n)
     if (held[n]) sheet.velocity[n] = {};
   const auto total = [&] { return momentum(sheet) - soft.support_impulse; };  // what supports gave is not the liquid's

@@ -26,7 +26,7 @@ struct Wet {
     SoftSheet soft;
     soft.sheet = make_sheet(GridSheet{.width = n.size_x, .height = n.size_y, .columns = 11, .rows = 11, .areal_mass = 0.1});
     cloth = make_network_cloth(std::move(soft), n, model, {}, {});
-    find_held(cloth.soft.sheet, held);
+    find_held(cloth.soft, held);
   }
   void weigh_it() { weigh(cloth, held, fabric.network, model, contents, exchange); }
   Real carried() const {

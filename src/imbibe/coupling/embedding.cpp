@@ -4,6 +4,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/geometry/closest.h"
 
 namespace imbibe {
 namespace {
@@ -54,7 +55,7 @@ SurfacePoint point_at(const Embedding& e, const Sheet& sheet, Real x, Real y) {
   Real inside = -infinite;
   for (const Index t : e.cell_triangles[i + static_cast<std::size_t>(e.columns) * j]) {
     const auto& n = sheet.triangles[t];
-    const auto w = weights_of(p, flat_corner(sheet, n[0]), flat_corner(sheet, n[1]), flat_corner(sheet, n[2]));
+    const auto w = barycentric(p, flat_corner(sheet, n[0]), flat_corner(sheet, n[1]), flat_corner(sheet, n[2]));
     const Real least = std::min({w[0], w[1], w[2]});
     if (least > inside) inside = least, best = {t, w};
   }
