@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "imbibe/geometry/sampling.h"
+#include "imbibe/wetting/hem_drop.h"
 
 namespace imbibe {
 namespace {
@@ -183,6 +184,7 @@ TEST(CellCloth, WhatLeaksIsBornInNoSolidAndOnNoOtherParticle) {
   Liquid water = liquid();
   const Real dx = water.spacing();
   cloth.waiting_kg[5] = 40 * water.particle_mass;
+  cloth.params.absorb = false;  // nothing is drawn back
   weigh(cloth);
   CellExchangeReport report;
   step_cell_cloth(cloth, scratch, water, Air{}, {0, 0, -9.81}, 1e-3, report, [](const Vec3&) { return true; });
@@ -200,6 +202,81 @@ TEST(CellCloth, WhatLeaksIsBornInNoSolidAndOnNoOtherParticle) {
       const Float4& b = water.particles.position[j];
       EXPECT_GE(norm(Vec3{a.x - b.x, a.y - b.y, a.z - b.z}), 0.8 * dx * (1 - 1e-6));  // places in single precision
     }
+  }
+}
+
+TEST(CellCloth, DropsFallFromTheHemAtTheMassOfTate) {
+  // Water comes to five nodes of the hem that lie within a drop's width of each other: one drop.
+  CellCloth cloth;
+  cloth.soft.sheet = make_sheet(GridSheet{.corner = {0, 0, 0}, .along_v = {0, 0, 1}, .width = 0.02, .height = 0.02,
+                                          .columns = 41, .rows = 41, .areal_mass = 0.2});
+  pin_nodes(cloth.soft.sheet, nodes_of_edge(cloth.soft.sheet, "top"));
+  fit_cells(cloth);
+  SoftSheetScratch scratch;
+  Sheet& sheet = cloth.soft.sheet;
+  find_held(cloth.soft, scratch.held);
+  set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
+  Liquid water = liquid();
+  water.particle_mass = 2e-6;
+  const Real expected = falling_drop_kg(2e-3, water.kind.surface_tension, 9.81);
+  EXPECT_NEAR(expected, 0.6 * 2 * pi * 2e-3 * 0.0728 / 9.81, 0.01 * expected);  // 56 mg of water
+  for (Index c = 0; c < cloth.grid->cells(); ++c) {  // full: nothing is drawn back
+    const Vec3 at = cloth.grid->centre(c);
+    add_parcel(*cloth.grid, cloth.contents, at.x, at.y, cloth.grid->capacity(c));
+  }
+  cloth.params.drying = false, cloth.params.absorption_factor = 0, cloth.params.resistance = 1e9;
+  CellExchangeReport report;
+  Real given = 0;
+  std::vector<Real> drops;
+  for (int step = 0; step < 400; ++step) {
+    for (Index c = 18; c < 23; ++c) cloth.waiting_kg[c] += 1e-7, given += 1e-7;
+    const std::size_t before = water.particles.size();
+    step_cell_cloth(cloth, scratch, water, Air{}, {0, 0, -9.81}, 1e-3, report);
+    if (water.particles.size() > before) drops.push_back(water.particle_mass * static_cast<Real>(water.particles.size() - before));
+    for (std::size_t i = before; i < water.particles.size(); ++i) {
+      EXPECT_LT(water.particles.position[i].z, -0.5 * water.spacing());
+      EXPECT_NEAR(water.particles.position[i].x, 0.01, 4e-3);
+    }
+    for (Float4& x : water.particles.position) x.z -= 0.02f;  // they fall
+  }
+  ASSERT_GE(drops.size(), 3u);
+  for (const Real kg : drops) EXPECT_NEAR(kg, expected, water.particle_mass);  // whole particles
+  EXPECT_NEAR(water.mass() + waiting_kg(cloth), given, 1e-12 * given);
+}
+
+TEST(CellCloth, ADropThatHangsIsDrawnBackIntoCellsThatHaveRoom) {
+  CellCloth cloth = hanging_cloth();
+  SoftSheetScratch scratch;
+  find_held(cloth.soft, scratch.held);
+  Liquid water = liquid();
+  cloth.waiting_kg[5] = 3e-5;
+  CellExchangeReport report;
+  step_cell_cloth(cloth, scratch, water, Air{}, {0, 0, -9.81}, 1e-3, report);
+  EXPECT_EQ(waiting_kg(cloth), 0);
+  EXPECT_NEAR(cell_kg(cloth), 3e-5, 1e-18);
+}
+
+TEST(CellCloth, WhatACoarseParticleGivesDoesNotDependOnTheSizeOfTheCells) {
+  // A particle of 20 mg on cells that hold 260 mg, 16 mg and 4 mg, 4.5 mg on its own cross-section: it is taken, and fills
+  // those under it alike.
+  for (const Index nodes : {23u, 92u, 185u}) {
+    CellCloth cloth;
+    cloth.soft.sheet = make_sheet(GridSheet{.width = 0.46, .height = 0.46, .columns = nodes, .rows = nodes, .areal_mass = 0.2});
+    cloth.soft.sheet.fixed = true;
+    cloth.params.capacity_ratio = 3;
+    fit_cells(cloth);
+    SoftSheetScratch scratch;
+    find_held(cloth.soft, scratch.held);
+    set_step(scratch.surface, cloth.soft.sheet.position, cloth.soft.sheet.position, cloth.soft.sheet.triangles);
+    Liquid water = liquid();
+    water.particle_mass = 2e-5;
+    add_particle(water, {0.2312, 0.2291, 0.3 * water.spacing()}, {});
+    std::vector<std::uint8_t> dead(1, 0);
+    CellExchangeReport report;
+    absorb_touching(cloth, scratch, water, dead, {0, 0, -9.81}, report);
+    EXPECT_EQ(dead[0], 1);
+    EXPECT_NEAR(cell_kg(cloth), 2e-5, 1e-17);
+    for (std::size_t c = 0; c < cloth.grid->cells(); ++c) EXPECT_LT(cell_saturation(*cloth.grid, cloth.contents, c), 2);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "imbibe/core/portable.h"
 #include "imbibe/geometry/direction.h"
 #include "imbibe/wetting/evaporation.h"
+#include "imbibe/wetting/hem_drop.h"
 
 namespace imbibe {
 namespace {
@@ -65,20 +66,54 @@ CellGrid free_form_cells(const Sheet& sheet, std::optional<Real> size, Real capa
   return grid;
 }
 
-bool takes(const CellCloth& cloth, Index cell, Real kg) {
-  if (!cloth.params.absorb) return false;
-  // A cell takes a whole particle when at least half of it still has room.
-  return !cloth.params.bounce || cloth.contents.content_kg[cell] + 0.5 * kg <= cloth.grid->capacity(cell);
+// A particle becomes so many parcels that a full cell holds about ten: with one or two the cells would be over-full by one
+// and empty without it, and what a cloth takes would depend on the size of its cells.
+constexpr Real parcels_of_a_full_cell = 10;
+constexpr int most_parcels_of_a_particle = 64;
+
+// Where a particle of edge dx that meets the cloth at m wets it: places spread evenly over a disc of its cross-section.
+void find_footprint(const CellCloth& cloth, const Vec3& m, Real kg, Real dx, std::vector<Vec3>& places) {
+  const Real capacity = cloth.grid->capacity(cloth.grid->cell_at(m.x, m.y));
+  const Real wanted = capacity > 0 ? std::ceil(parcels_of_a_full_cell * kg / capacity) : 1;
+  const int count = static_cast<int>(std::clamp(wanted, Real{1}, Real{most_parcels_of_a_particle}));
+  constexpr Real golden_angle = 2.399963229728653;
+  const Real radius = dx / std::sqrt(pi);
+  places.assign(static_cast<std::size_t>(count), m);
+  for (int k = 0; count > 1 && k < count; ++k) {
+    const Real r = radius * std::sqrt((k + 0.5) / count);
+    places[static_cast<std::size_t>(k)] += r * Vec3{portable::cos(golden_angle * k), portable::sin(golden_angle * k), 0};
+  }
 }
 
-void absorb(CellCloth& cloth, std::span<const std::uint8_t> held, const Vec3& m, Real kg, const Vec3& velocity) {
-  const std::size_t before = cloth.contents.parcels();
-  add_parcel(*cloth.grid, cloth.contents, m.x, m.y, kg);
-  const Vec3& at = cloth.contents.parcel_place[before];
-  const Index node = (*cloth.node_of_cell)[cloth.grid->cell_at(at.x, at.y)];
+// Whether the cells under a footprint have room for at least half of the particle, or of what they hold if that is less.
+bool takes(const CellCloth& cloth, const std::vector<Vec3>& footprint, Real kg) {
+  if (!cloth.params.absorb) return false;
+  if (!cloth.params.bounce) return true;
+  std::array<Index, most_parcels_of_a_particle> cells;
+  std::size_t count = 0;
+  for (const Vec3& at : footprint) cells[count++] = cloth.grid->cell_at(at.x, at.y);
+  std::sort(cells.begin(), cells.begin() + count);
+  count = static_cast<std::size_t>(std::unique(cells.begin(), cells.begin() + count) - cells.begin());
+  Real room = 0, capacity = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    capacity += cloth.grid->capacity(cells[k]);
+    room += std::max(0.0, cloth.grid->capacity(cells[k]) - cloth.contents.content_kg[cells[k]]);
+  }
+  return 0.5 * std::min(kg, capacity) <= room;
+}
+
+void absorb(CellCloth& cloth, std::span<const std::uint8_t> held, const std::vector<Vec3>& footprint, Real kg,
+            const Vec3& velocity) {
+  const Real part = kg / static_cast<Real>(footprint.size());
+  for (const Vec3& m : footprint) {
+    const std::size_t before = cloth.contents.parcels();
+    add_parcel(*cloth.grid, cloth.contents, m.x, m.y, part);
+    const Vec3& at = cloth.contents.parcel_place[before];
+    const Index node = (*cloth.node_of_cell)[cloth.grid->cell_at(at.x, at.y)];
+    merge_into_node(cloth.soft, held, node, part, velocity);
+    cloth.soft.sheet.added_mass[node] += part;
+  }
   cloth.soft.liquid_impulse += kg * velocity;
-  merge_into_node(cloth.soft, held, node, kg, velocity);
-  cloth.soft.sheet.added_mass[node] += kg;
   ++cloth.absorbed_particles;
 }
 
@@ -116,31 +151,120 @@ std::array<Vec3, 14> birth_places(const CellCloth& cloth, const MovingMesh& surf
   return places;
 }
 
+// Births of one step: whether a place is free, and the books of what is born there.
+struct Births {
+  CellCloth& cloth;
+  SoftSheetScratch& scratch;
+  Liquid& liquid;
+  const SolidAt& solid_at;
+  CellExchangeReport& report;
+
+  bool is_free(const Vec3& place) const { return scratch.occupancy.is_free(place) && !(solid_at && solid_at(place)); }
+  // A particle of what waits at `cell`.
+  void give(Index cell, const Vec3& place) const {
+    const Index node = (*cloth.node_of_cell)[cell];
+    const Vec3 velocity = cloth.soft.sheet.velocity[node];
+    const Real mass = liquid.particle_mass;
+    add_particle(liquid, place, velocity);
+    scratch.occupancy.add(place);
+    cloth.waiting_kg[cell] -= mass;
+    cloth.soft.sheet.added_mass[node] = std::max(0.0, cloth.soft.sheet.added_mass[node] - mass);
+    cloth.soft.liquid_impulse -= mass * velocity;
+    // What rounding to single precision takes from the particle stays with the node: momentum is whole.
+    give_impulse(cloth.soft, scratch.held, node, mass * (velocity - xyz(liquid.particles.velocity.back())));
+    ++cloth.released_particles, ++report.released;
+  }
+};
+
+// `count` particles as a drop that hangs under the origin: the points of a cubic lattice nearest to one of them, moved down
+// until the highest is one spacing times `hanging` below.
+std::vector<Vec3> drop_places(std::size_t count, Real spacing, const Vec3& down) {
+  const Vec3 a = any_perpendicular(down), b = cross(down, a);
+  const int reach = static_cast<int>(std::ceil(std::cbrt(static_cast<Real>(count)))) + 1;
+  std::vector<std::array<int, 3>> points;
+  for (int k = -reach; k <= reach; ++k)
+    for (int j = -reach; j <= reach; ++j)
+      for (int i = -reach; i <= reach; ++i) points.push_back({k, j, i});
+  const auto square = [](const std::array<int, 3>& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; };
+  std::sort(points.begin(), points.end(), [&](const auto& p, const auto& q) {
+    return square(p) != square(q) ? square(p) < square(q) : p > q;  // among equals the lower ones: a drop hangs
+  });
+  points.resize(count);
+  int highest = reach;
+  for (const auto& p : points) highest = std::min(highest, p[0]);
+  std::vector<Vec3> places;
+  for (const auto& p : points) places.push_back(spacing * ((p[0] - highest + hanging) * down + Real(p[1]) * a + Real(p[2]) * b));
+  return places;
+}
+
+// What hangs within a drop's width of `cell` is one drop with it: where that makes kg, it is drawn together there.
+bool gather_waiting(CellCloth& cloth, std::span<const std::uint8_t> held, std::span<const Index> waiting, Index cell,
+                    Real kg, Real width) {
+  const auto place = [&](Index c) { return cloth.soft.sheet.position[(*cloth.node_of_cell)[c]]; };
+  const auto near = [&](Index other) { return norm(place(other) - place(cell)) <= width; };
+  Real sum = 0;
+  for (const Index other : waiting) sum += near(other) ? cloth.waiting_kg[other] : 0;
+  if (sum < kg) return false;
+  for (const Index other : waiting) {
+    const Real missing = kg - cloth.waiting_kg[cell];
+    if (other == cell || missing <= 0 || !near(other)) continue;
+    const Real moved = std::min(missing, cloth.waiting_kg[other]);
+    carry(cloth, held, other, cell, moved);
+    cloth.waiting_kg[other] -= moved, cloth.waiting_kg[cell] += moved;
+  }
+  return cloth.waiting_kg[cell] >= kg;
+}
+
+// Drops that hang where cells have room again, and nothing leaks, are drawn back into the cloth.
+void draw_back(CellCloth& cloth) {
+  constexpr Real least_share = 0.05;  // of the capacity: not a parcel in every step
+  const CellGrid& grid = *cloth.grid;
+  CellContents& contents = cloth.contents;
+  if (!cloth.params.absorb || waiting_kg(cloth) == 0) return;
+  for (std::size_t c = 0; c < grid.cells(); ++c)
+    if (contents.content_kg[c] > grid.capacity(c)) return;
+  for (Index c = 0; c < grid.cells(); ++c) {
+    const Real room = grid.capacity(c) - contents.content_kg[c], kg = std::min(room, cloth.waiting_kg[c]);
+    if (!(kg > 0) || (kg < cloth.waiting_kg[c] && kg < least_share * grid.capacity(c))) continue;
+    const Vec3 at = grid.centre(c);
+    add_parcel(grid, contents, at.x, at.y, kg);
+    cloth.waiting_kg[c] -= kg;
+  }
+}
+
+// Drops fall where they have grown to their greatest mass; what comes faster than drops can fall leaves as a stream.
+constexpr Real drops_of_a_stream = 3;
+
 void release(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Vec3& gravity, const SolidAt& solid_at,
              CellExchangeReport& report) {
-  const Real mass = liquid.particle_mass, spacing = liquid.spacing();
-  const auto waits = [&](Real kg) { return kg >= mass; };
-  if (mass <= 0 || std::none_of(cloth.waiting_kg.begin(), cloth.waiting_kg.end(), waits)) return;
+  const Real mass = liquid.particle_mass, spacing = liquid.spacing(), neck = cloth.params.drop_neck;
+  std::vector<Index> waiting;
+  for (Index c = 0; c < cloth.waiting_kg.size(); ++c)
+    if (cloth.waiting_kg[c] > 0) waiting.push_back(c);
+  if (mass <= 0 || waiting.empty()) return;
+  const Real falling = falling_drop_kg(neck, liquid.kind.surface_tension, norm(gravity));
+  if (waiting_kg(cloth) < std::max(mass, falling)) return;
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(falling / mass)));
+  const Real drop_kg = static_cast<Real>(count) * mass;
+  std::stable_sort(waiting.begin(), waiting.end(), [&](Index a, Index b) { return cloth.waiting_kg[a] > cloth.waiting_kg[b]; });
   Bounds region;
   for (const Vec3& x : cloth.soft.sheet.position) region.include(x);
-  region.grow(4 * spacing);  // births are within about 2.2 of a node, others matter within 0.8 of them
-  scratch.occupancy.reset(liquid.particles.position, region, clear_of_others * spacing);
   const Vec3 down = normalized(gravity);
-  for (Index cell = 0; cell < cloth.waiting_kg.size(); ++cell) {
-    if (!waits(cloth.waiting_kg[cell])) continue;
-    const Index node = (*cloth.node_of_cell)[cell];
-    for (const Vec3& place : birth_places(cloth, scratch.surface, cell, down, spacing)) {
-      if (!waits(cloth.waiting_kg[cell])) break;
-      if (!scratch.occupancy.is_free(place) || (solid_at && solid_at(place))) continue;
-      const Vec3 velocity = cloth.soft.sheet.velocity[node];
-      add_particle(liquid, place, velocity);
-      scratch.occupancy.add(place);
-      cloth.waiting_kg[cell] -= mass;
-      cloth.soft.sheet.added_mass[node] = std::max(0.0, cloth.soft.sheet.added_mass[node] - mass);
-      cloth.soft.liquid_impulse -= mass * velocity;
-      // What rounding to single precision takes from the particle stays with the node: momentum is whole.
-      give_impulse(cloth.soft, scratch.held, node, mass * (velocity - xyz(liquid.particles.velocity.back())));
-      ++cloth.released_particles, ++report.released;
+  const std::vector<Vec3> drop = drop_places(count, spacing, down);
+  region.grow(norm(drop.back()) + 4 * spacing);
+  scratch.occupancy.reset(liquid.particles.position, region, clear_of_others * spacing);
+  const Births births{cloth, scratch, liquid, solid_at, report};
+  for (const Index cell : waiting) {
+    if (!gather_waiting(cloth, scratch.held, waiting, cell, drop_kg, 2 * neck)) continue;
+    const Vec3 from = cloth.soft.sheet.position[(*cloth.node_of_cell)[cell]];
+    const bool free = std::all_of(drop.begin(), drop.end(), [&](const Vec3& p) {
+      return births.is_free(from + p) && nearest_on(scratch.surface, from + p, clear_of_sheet * spacing).at.triangle == no_index;
+    });
+    if (free) {
+      for (const Vec3& p : drop) births.give(cell, from + p);
+    } else if (count == 1 || cloth.waiting_kg[cell] > drops_of_a_stream * drop_kg) {
+      for (const Vec3& place : birth_places(cloth, scratch.surface, cell, down, spacing))
+        if (cloth.waiting_kg[cell] >= mass && births.is_free(place)) births.give(cell, place);
     }
   }
 }
@@ -219,8 +343,9 @@ void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid,
     if (dead[i]) continue;
     ++cloth.crossings;
     const Vec3 m = material(sheet, hit.crossing.at), v = xyz(p.velocity[i]);
-    if (takes(cloth, cloth.grid->cell_at(m.x, m.y), mass)) {
-      absorb(cloth, scratch.held, m, mass - p.owed_kg[i], v);
+    find_footprint(cloth, m, mass, dx, scratch.footprint);
+    if (takes(cloth, scratch.footprint, mass)) {
+      absorb(cloth, scratch.held, scratch.footprint, mass - p.owed_kg[i], v);
       p.owed_kg[i] = 0, dead[i] = 1;
       ++report.absorbed;
       continue;
@@ -260,8 +385,9 @@ void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid
         dot(near.normal, xyz(p.velocity[i]) - velocity_at(cloth.soft.sheet, near.at)) > 0.5 * std::sqrt(norm(gravity) * liquid.spacing()))
       continue;
     const Vec3 m = material(cloth.soft.sheet, near.at);
-    if (!takes(cloth, cloth.grid->cell_at(m.x, m.y), liquid.particle_mass)) continue;
-    absorb(cloth, scratch.held, m, liquid.particle_mass - p.owed_kg[i], xyz(p.velocity[i]));
+    find_footprint(cloth, m, liquid.particle_mass, liquid.spacing(), scratch.footprint);
+    if (!takes(cloth, scratch.footprint, liquid.particle_mass)) continue;
+    absorb(cloth, scratch.held, scratch.footprint, liquid.particle_mass - p.owed_kg[i], xyz(p.velocity[i]));
     p.owed_kg[i] = 0, dead[i] = 1;
     ++report.absorbed;
   }
@@ -290,6 +416,7 @@ void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid
       cloth.waiting_kg[leak.at] += leak.kg;
     }
   }
+  draw_back(cloth);
   release(cloth, scratch, liquid, gravity, solid_at, report);
   weigh(cloth);
 }

@@ -4,7 +4,8 @@
 //   arrives   a particle whose way crosses the sheet, or that lies on it: absorbed while the cell has room (a full cell
 //             bounces it, or takes it when `bounce` is off), with all its mass and momentum
 //   moves     parcels carry their mass, and the momentum of the node they leave, to the node they reach
-//   leaks     parcels wait at the cell where they come out until they make a whole particle, born hanging there
+//   leaks     parcels wait at the cell where they come out, as a drop that hangs there, until it has the mass at which drops
+//             fall (wetting/hem_drop.h): then its particles are born, as a drop under the cloth
 //   weighs    added mass of a node = contents and waiting mass of its cell;  stiffness x (1 - alpha s), damping + beta s
 //
 // alpha wet softening, beta s, s saturation of the cell. Gravity along the cloth, per node the mean over its triangles

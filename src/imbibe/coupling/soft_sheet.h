@@ -62,6 +62,7 @@ struct SoftSheetScratch {
   SheetWall wall;                  // what the liquid's solver sees of it
   std::vector<SheetHit> hits;      // of the liquid's particles in this step
   std::vector<std::vector<SheetHit>> hit_tiles;
+  std::vector<Vec3> footprint;     // where a particle that is taken in goes, m in the sheet
   Occupancy occupancy;             // where leaks may be born
 };
 

@@ -38,6 +38,7 @@ struct CellParams {
   std::optional<Real> capacity;       // kg/m2, in place of the ratio
   Real residual_saturation = 0.05;    // 1
   Real leak_time = 0.1;               // s, tau
+  Real drop_neck = 2e-3;              // m, hem_drop.h
   bool drying = true;
   Real critical_saturation = 0.3;     // 1, s_c
   Real restitution = 0.3;             // 1, of a bounce
@@ -64,6 +65,9 @@ void describe(V& v, CellParams& p) {
           {.min = 0, .max = 0.9, .help = "share of the capacity that the fibres hold where it is"});
   v.value("leak_time", p.leak_time,
           {.unit = "s", .min = 0, .max = 1e4, .above_min = true, .help = "time in which an over-full cell leaks its excess"});
+  v.value("drop_neck", p.drop_neck,
+          {.unit = "m", .shown = "mm", .min = 0, .max = 0.1,
+           .help = "radius of the neck of drops that hang where it leaks: they fall at 0.6 2 pi r gamma/g; 0: at once"});
   v.value("drying", p.drying, {.help = "liquid evaporates from both faces"});
   v.value("critical_saturation", p.critical_saturation,
           {.min = 0, .max = 1, .help = "below it drying slows in proportion to what is left"});
