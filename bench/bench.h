@@ -66,6 +66,7 @@ void add_neighbour_benchmarks(const BenchOptions& options);
 void add_liquid_benchmarks(const BenchOptions& options);
 void add_network_benchmarks(const BenchOptions& options);
 void add_contact_benchmarks(const BenchOptions& options);
+void add_cloth_benchmarks(const BenchOptions& options);
 void add_output_benchmarks(const BenchOptions& options);
 void add_scene_benchmarks(const BenchOptions& options);
 

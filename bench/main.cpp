@@ -97,6 +97,7 @@ void register_all(const BenchOptions& options) {
   add_liquid_benchmarks(options);
   add_network_benchmarks(options);
   add_contact_benchmarks(options);
+  add_cloth_benchmarks(options);
   add_output_benchmarks(options);
   add_scene_benchmarks(options);
 }
