@@ -217,5 +217,16 @@ TEST(SoftSheet, TheWeightOfARestingSheetIsItsSupports) {
   EXPECT_LT(norm(soft.support_impulse + (0.05 * total_mass(soft.sheet)) * gravity), 1e-15);
 }
 
+TEST(SoftSheet, AFixedSheetIsAWallThatStandsWhoeverSetItsSurface) {
+  SoftSheet soft = hanging();
+  soft.sheet.fixed = true;
+  SoftSheetScratch scratch;
+  set_step(scratch.surface, soft.sheet.position, soft.sheet.position, soft.sheet.triangles);
+  advance_sheet(soft, scratch, {0, 0, -9.81}, {}, 1e-3);
+  const Wall wall = sheet_as_wall(soft, scratch);
+  ASSERT_EQ(wall.sheet->velocity.size(), soft.sheet.size());
+  for (const Vec3& v : wall.sheet->velocity) EXPECT_EQ(v, Vec3{});
+}
+
 }  // namespace
 }  // namespace imbibe

@@ -242,7 +242,7 @@ ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const 
   if (!soft.moves()) {
     sheet.time += dt;
     soft.support_impulse -= (total_mass(sheet) * dt) * gravity;
-    if (shows_standing(scratch.surface, sheet)) return report;
+    if (shows_standing(scratch.surface, sheet) && scratch.wall_velocity.size() == sheet.size()) return report;
     set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
     scratch.wall_velocity.assign(sheet.size(), Vec3{});
     return report;
