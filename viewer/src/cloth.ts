@@ -47,7 +47,7 @@ export class Cloth {
         .replace('#include <color_fragment>', `
           // Plain weave, where a thread is wider than a pixel.
           vec2 thread = vPlace / ${THREAD.toFixed(2)};
-          float near = 1.0 - smoothstep(0.15, 0.5, max(fwidth(thread.x), fwidth(thread.y)));
+          float near = 1.0 - smoothstep(0.08, 0.25, max(fwidth(thread.x), fwidth(thread.y)));
           vec2 s = sin(6.2832 * thread);
           float over = 0.5 + 0.5 * s.x * s.y, weave = 1.0 - 0.10 * near * (1.0 - over);
           diffuseColor.rgb = wetColour(uDry, vSaturation) * weave;`)

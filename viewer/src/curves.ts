@@ -4,7 +4,7 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import type { Swatch } from './swatch';
 
-interface Curve { column: string; name: string; colour: string; minus?: string }
+interface Curve { column: string; name: string; colour: string; minus?: string; of?: 'yarns' | 'cells' }
 interface Chart { title: string; x: 'time' | 'root'; factor: number; curves: Curve[]; plot: uPlot | null; element: HTMLElement; signature: string }
 
 // Okabe and Ito's colours, which the colour-blind can tell apart; blue is left to the liquid in the yarns.
@@ -20,11 +20,12 @@ export class Curves {
       ({ title, x, factor, curves, plot: null, element: elements[i]!, signature: '' });
     this.charts = [
       chart(0, 'Liquid (mg)', 'time', 1e6, [
-        { column: 'free_kg', name: 'free', colour: SKY }, { column: 'yarn_kg', name: 'in yarns', colour: BLUE },
-        { column: 'pore_kg', name: 'in pores', colour: GREEN }, { column: 'sorbed_kg', name: 'sorbed', colour: ORANGE, minus: 'initial_kg' },
-        { column: 'evaporated_kg', name: 'evaporated', colour: PINK }]),
+        { column: 'free_kg', name: 'free', colour: SKY }, { column: 'yarn_kg', name: 'in yarns', colour: BLUE, of: 'yarns' },
+        { column: 'pore_kg', name: 'in pores', colour: GREEN, of: 'yarns' }, { column: 'cell_kg', name: 'in the cloth', colour: BLUE, of: 'cells' },
+        { column: 'sorbed_kg', name: 'sorbed', colour: ORANGE, minus: 'initial_kg', of: 'yarns' }, { column: 'evaporated_kg', name: 'evaporated', colour: PINK }]),
       chart(1, 'Wetted area (mm²)', 'time', 1e6, [
-        { column: 'wet_area_m2', name: 'yarns', colour: BLUE }, { column: 'wet_pore_area_m2', name: 'pores', colour: GREEN }]),
+        { column: 'wet_area_m2', name: 'yarns', colour: BLUE, of: 'yarns' }, { column: 'wet_pore_area_m2', name: 'pores', colour: GREEN, of: 'yarns' },
+        { column: 'wet_area_m2', name: 'cloth', colour: BLUE, of: 'cells' }]),
       chart(2, 'Front (mm) over √t', 'root', 1e3, [
         { column: 'wet_extent_warp_m', name: 'along warp', colour: BLUE }, { column: 'wet_extent_weft_m', name: 'along weft', colour: RED },
         { column: 'wet_height_m', name: 'height', colour: GREEN }]),
@@ -45,11 +46,18 @@ export class Curves {
     for (const chart of this.charts) this.draw(chart);
   }
 
+  // Those of what the scene has: yarns with pores, or cloth of cells (or neither: then of yarns).
+  private curvesOf(chart: Chart): Curve[] {
+    const all = this.swatches(), cells = all.some((s) => s.message?.cloths.length), yarns = !cells || all.some((s) => s.textiles.length);
+    return chart.curves.filter((c) => !c.of || (c.of === 'cells' ? cells : yarns));
+  }
+
   private draw(chart: Chart): void {
     const swatches = this.swatches();
     if (swatches.length === 0 || chart.element.clientWidth === 0) return;
-    const width = chart.element.clientWidth, height = chart.element.clientHeight;
-    const signature = `${swatches.length} ${getComputedStyle(document.documentElement).getPropertyValue('--ink')}`;
+    const width = chart.element.clientWidth, height = chart.element.clientHeight - 16;  // under the title
+    const curves = this.curvesOf(chart);
+    const signature = `${swatches.length} ${curves.length} ${getComputedStyle(document.documentElement).getPropertyValue('--ink')}`;
     if (signature !== chart.signature || !chart.plot) {
       chart.plot?.destroy();
       chart.plot = new uPlot(this.options(chart, swatches.length, width, height), [[]], chart.element);
@@ -58,7 +66,7 @@ export class Curves {
     if (chart.plot.width !== width || chart.plot.height !== height) chart.plot.setSize({ width, height });
     const tables = swatches.map((swatch) => {
       const x = swatch.series.column('time_s').map((t) => (chart.x === 'root' ? Math.sqrt(Math.max(t, 0)) : t));
-      const ys = chart.curves.map((curve) => {
+      const ys = curves.map((curve) => {
         const y = swatch.series.column(curve.column, chart.factor);
         const minus = curve.minus ? swatch.series.column(curve.minus, chart.factor) : null;
         return minus ? y.map((v, i) => v - minus[i]!) : y;
@@ -74,7 +82,7 @@ export class Curves {
     const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint, width: 1, size: 4 }, font: '11px system-ui, sans-serif', gap: 3 };
     const series: uPlot.Series[] = [{ label: chart.x === 'root' ? '√s' : 's' }];
     for (let i = 0; i < swatches; ++i)
-      for (const curve of chart.curves)
+      for (const curve of this.curvesOf(chart))
         series.push({ label: swatches > 1 ? `${curve.name} ${i === 0 ? 'left' : 'right'}` : curve.name, stroke: curve.colour, width: 1.8,
           dash: i === 1 ? [6, 4] : [], spanGaps: true, points: { show: false } });
     return {
@@ -92,7 +100,7 @@ export class Curves {
     if (!title) return;
     const key = document.createElement('span');
     key.className = 'key';
-    for (const curve of chart.curves) {
+    for (const curve of this.curvesOf(chart)) {
       const item = document.createElement('span');
       item.style.setProperty('--colour', curve.colour);
       item.textContent = curve.name;

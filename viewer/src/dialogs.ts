@@ -12,8 +12,10 @@ function show(html: string): HTMLDialogElement {
 }
 
 export function galleryDialog(scenes: { id: string; title: string }[], open: (id: string) => void, openFile: (file: File) => void): void {
-  const folders = [...new Set(scenes.map((s) => s.id.split('/')[0] ?? ''))];
-  const names: Record<string, string> = { quickstart: 'Start here', extra: 'More cloths and liquids', seed_a: 'Figures of the seed paper' };
+  const names: Record<string, string> = { quickstart: 'Start here', extra: 'More cloths and liquids', cloth: 'Soft cloth', seed_b: 'A pipe on soft cloth: seed B',
+    seed_a: 'Drops on wool and polyester: figures of seed A', verify: 'Cases with a known answer' };
+  const order = Object.keys(names), rank = (folder: string) => (order.indexOf(folder) + order.length + 1) % (order.length + 1);
+  const folders = [...new Set(scenes.map((s) => s.id.split('/')[0] ?? ''))].sort((a, b) => rank(a) - rank(b));
   const dialog = show(`<h2>Scenes to start from</h2><div class="gallery">` + folders.map((folder) =>
     `<h3>${escape(names[folder] ?? folder)}</h3><div>` + scenes.filter((s) => s.id.startsWith(`${folder}/`)).map((s) =>
       `<button value="${escape(s.id)}"><b>${escape((s.id.split('/')[1] ?? s.id).replaceAll('_', ' '))}</b><span>${escape(s.title)}</span></button>`).join('') + '</div>').join('') +

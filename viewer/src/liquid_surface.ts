@@ -61,13 +61,14 @@ void main() {
       // A flat bottom seen through a face tilted by n is moved by about a quarter of the depth.
       vec2 bend = vUv - 0.25 * clamp(thick, 0.0, 3.0) * n.xy * 0.5 * vec2(uProjection[0][0], uProjection[1][1]) / d;
       vec3 seen = texture2D(uScene, bend).rgb;
-      vec3 through = seen * exp(-thick * vec3(0.13, 0.04, 0.012));
+      // Stronger than water's own colour, so that a drop of a millimetre is seen.
+      vec3 through = seen * exp(-thick * vec3(0.55, 0.17, 0.05));
       float facing = max(0.0, dot(n, eye));
       float fresnel = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
       vec3 mirrored = mat3(uToWorld) * reflect(-eye, n);
       vec3 colour = mix(through, sky(mirrored), clamp(fresnel, 0.0, 0.85));
       float rim = smoothstep(0.0, 0.35, facing);
-      gl_FragColor = vec4(colour * mix(0.72, 1.0, rim), 1.0);
+      gl_FragColor = vec4(colour * mix(0.55, 1.0, rim), 1.0);
     }
   }
   #include <colorspace_fragment>

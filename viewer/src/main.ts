@@ -18,6 +18,7 @@ const look = {
   bar: { value: Array.from({ length: 11 }, () => new THREE.Vector4(1, 1, 1, 1)) },
   levels: { value: 11 },
   scale: { value: 200 },
+  pixels: { value: 600 },
 };
 let hello: HelloMessage | null = null;
 let swatches: Swatch[] = [];
@@ -27,6 +28,7 @@ let target = 0;               // swatch that the parameters change
 let picked: Hit | null = null;
 let mode: 'look' | 'drop' = 'look';
 let fitted = '';
+let toFit: 'free' | 'keep' | null = null;  // once the first frame tells where the liquid hangs
 const rows: ControlRow[][] = [[], []];
 const counters = { frames: 0, bytes: 0, errors: 0, notices: 0, changes: 0, connects: 0, geometries: 0, largest: 0, problems: [] as Problem[], lastChange: null as null | { set: string[]; step: number; time: number } };
 
@@ -156,9 +158,10 @@ function onFrame(frame: Frame): void {
     ++counters.geometries;
     view.setQuality(view.quality);
     const key = swatches.map((s) => `${s.message?.title} ${s.bounds.min.toArray()} ${s.bounds.max.toArray()}`).join();
-    if (key !== fitted) { fitted = key; view.fit(counters.geometries <= wanted ? 'free' : 'keep'); }
+    if (key !== fitted) { fitted = key; view.fit(toFit = counters.geometries <= wanted ? 'free' : 'keep'); }
     curves.rebuild();
   } else {
+    if (toFit && swatches.every((s) => s.frames > 0)) { view.fit(toFit); toFit = null; }
     ++counters.frames;
     counters.bytes += frame.bytes;
     counters.largest = Math.max(counters.largest, frame.bytes);
@@ -201,7 +204,7 @@ function showStatus(): void {
     const step = swatch.value('step_s'), ledger = swatch.value('ledger_error');
     const bound = hello!.step_bounds[swatch.value('step_bound')] ?? '';
     chips.push(['', `${side}step ${withPrefix(step, 's')}${bound ? ` (${bound})` : ''}`, 'Size of the last step, and what held it']);
-    chips.push([ledger > 1e-9 ? 'warning' : '', `${side}ledger error ${ledger.toExponential(1)}`, 'Mass that is missing, of all there is']);
+    chips.push([ledger > 1e-9 ? 'warning' : '', `${side}ledger error ${ledger === 0 ? '0' : ledger.toExponential(1)}`, 'Mass that is missing, of all there is']);
     const particles = swatch.value('particles');
     chips.push(['', `${side}${particles.toLocaleString('en')} particles${(swatch.flags & Flag.resting) ? ', at rest' : ''}`, 'Of free liquid']);
     if (swatch.value('left_kg') > 0) chips.push(['warning', `${side}${withPrefix(1e3 * swatch.value('left_kg'), 'g')} left the domain`, 'Liquid that fell out of the scene']);
@@ -219,6 +222,7 @@ function showStatus(): void {
 }
 
 function afterDraw(): void {
+  look.pixels.value = view.canvas.height;
   const { pixels, millimetres } = view.scaleBar();
   byId('scale').style.setProperty('--width', `${pixels}px`);
   byId('scale').querySelector('span')!.textContent = withPrefix(millimetres / 1000, 'm', 1);
@@ -386,7 +390,7 @@ view.setQuality(quality);
 // What tests wait for and look at.
 Object.assign(window, {
   imbibe: {
-    counters, view, panel,
+    counters, view, panel, curves,
     get swatches() { return swatches; },
     get hello() { return hello; },
     get holder() { return holder; },

@@ -56,10 +56,11 @@ export class Panel {
       const known = folders.get(path);
       if (known) return known;
       const dot = path.lastIndexOf('.');
-      const made = folder(dot < 0 ? '' : path.slice(0, dot)).addFolder(label(path));
+      const name = /\[\d+\]$/.test(path) ? this.rows.find((row) => row.path === `${path}.name`)?.text?.replaceAll('"', '') : '';
+      const made = folder(dot < 0 ? '' : path.slice(0, dot)).addFolder(label(path).replace(/s?\[(\d+)\]$/, (_, i) => ` ${Number(i) + 1}`) + (name ? `: ${name}` : ''));
       made.$title.title = help.get(path) ?? '';
       const depth = path.split('.').length;
-      const open = this.open.get(path) ?? (this.filter !== '' || (depth === 1 && !/solver|measures|domain|solids/.test(path)) || path === 'liquid.kind');
+      const open = this.open.get(path) ?? (this.filter !== '' || (depth === 1 && !/solver|measures|domain|solids/.test(path)) || /^liquid\.kind$|^liquid\.pipes\[\d+\]$|\.wetting$|\.wetting\.cells$/.test(path));
       if (!open) made.close();
       made.onOpenClose((g: GUI) => { if (g === made) this.open.set(path, !made._closed); });
       folders.set(path, made);
@@ -141,17 +142,20 @@ export class Panel {
     return Array.isArray(value) ? `[${value.map(one).join(', ')}]` : one(value);
   }
 
-  // A slider tells many values: at most one message in 50 ms, the last one always.
+  // A slider tells many values: the first at once, then at most one message in 50 ms, the last one always.
   private send(row: ControlRow, value: unknown): void {
     if (row.effect === 'restart') return this.handlers.set([`${row.path}=${this.written(row, value)}`], true);
     this.waiting.set(row.path, this.written(row, value));
     if (this.timer) return;
-    this.timer = window.setTimeout(() => {
+    const sendWaiting = () => {
       this.timer = 0;
+      if (this.waiting.size === 0) return;
       const assignments = [...this.waiting].map(([path, text]) => `${path}=${text}`);
       this.waiting.clear();
       this.handlers.set(assignments, false);
-    }, 50);
+      this.timer = window.setTimeout(sendWaiting, 50);
+    };
+    sendWaiting();
   }
 
   private refresh(): void {

@@ -7,6 +7,12 @@ import { Series } from './series';
 import { solidMesh } from './solids';
 import { MM, Yarns, type YarnLook } from './yarns';
 
+function boxOf({ origin, step, xyz }: Points): THREE.Box3 {
+  if (xyz.length === 0) return new THREE.Box3();
+  const low = new THREE.Vector3(...origin).multiplyScalar(MM);
+  return new THREE.Box3(low, new THREE.Vector3(...step).multiplyScalar(65535 * MM).add(low));
+}
+
 export class Swatch {
   readonly scene = new THREE.Scene();
   yarns: Yarns[] = [];
@@ -21,6 +27,8 @@ export class Swatch {
   frames = 0;
   frameBytes = 0;
   readonly bounds = new THREE.Box3();
+  readonly startingLiquid = new THREE.Box3();
+  shadowsStale = true;
   private readonly things = new THREE.Group();
   private readonly sun = new THREE.DirectionalLight(0xffffff, 2.5);
 
@@ -33,7 +41,6 @@ export class Swatch {
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.radius = 5;
-    this.sun.shadow.normalBias = 0.05;
   }
 
   get textiles() { return this.message?.textiles ?? []; }
@@ -41,6 +48,7 @@ export class Swatch {
   begin(message: SceneMessage): void {
     this.message = message;
     this.generation = message.generation;
+    this.frames = 0;
     this.series.load(message.history);
     this.values = new Float64Array(this.series.columns.length);
   }
@@ -54,12 +62,16 @@ export class Swatch {
     ++this.frames;
     this.frameBytes += frame.bytes;
     for (const section of frame.sections) {
-      if (section.kind === 'particles') { this.liquid?.set(section.points); continue; }
+      if (section.kind === 'particles') {
+        this.liquid?.set(section.points);
+        if (this.frames === 1) this.startingLiquid.copy(boxOf(section.points));
+        continue;
+      }
       const yarns = 'owner' in section ? this.yarns[section.owner] ?? this.cloths[section.owner - this.textiles.length] : undefined;
       if (!yarns) continue;
       if (section.kind === 'saturations') yarns.saturation.set(section.values), yarns.saturationChanged();
       else if (section.kind === 'changes') applyChanges(yarns.saturation, section.bytes, section.count), yarns.saturationChanged();
-      else if (section.kind === 'yarns') yarns.setPoints(section.points);
+      else if (section.kind === 'yarns') yarns.setPoints(section.points), this.shadowsStale = true;
     }
   }
 
@@ -79,7 +91,8 @@ export class Swatch {
         this.cloths[i] = cloth;
         this.things.add(cloth.mesh);
       } else if (section.kind === 'yarns') {
-        const yarns = new Yarns(message.textiles[section.owner]!, section.points, this.look, sides);
+        const info = message.textiles[section.owner]!;
+        const yarns = new Yarns(info, section.points, this.look, info.segments > 8000 ? Math.min(sides, 8) : sides);
         this.yarns[section.owner] = yarns;
         this.things.add(yarns.group);
       } else if (section.kind === 'pores') {
@@ -93,6 +106,8 @@ export class Swatch {
       }
     }
     this.bounds.makeEmpty();
+    this.startingLiquid.makeEmpty();
+    this.shadowsStale = true;
     for (const yarns of this.yarns)
       for (let i = 0; i < yarns.firstPoint[yarns.firstPoint.length - 1]!; ++i)
         this.bounds.expandByPoint(new THREE.Vector3(yarns.points[4 * i]!, yarns.points[4 * i + 1]!, yarns.points[4 * i + 2]!));
@@ -119,6 +134,7 @@ export class Swatch {
     camera.near = 0.1 * size;
     camera.far = 3 * size;
     camera.updateProjectionMatrix();
+    this.sun.shadow.normalBias = 0.0012 * size;  // two texels of the shadow map
   }
 
   value(name: string): number { return this.values[this.series.index(name)] ?? 0; }

@@ -16,6 +16,7 @@ export class View {
   quality: Quality = 'fine';
   draws = 0;
   drawMs = 0;
+  hold = false;  // draws only when drawNow() is called: films and measures
   private readonly renderer: THREE.WebGLRenderer;
   private surface: LiquidSurface | null = null;
   private dirty = true;
@@ -32,13 +33,14 @@ export class View {
     this.software = /swiftshader|llvmpipe|software/i.test(name);
     this.renderer.autoClear = false;
     this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    this.renderer.shadowMap.autoUpdate = false;  // drawn anew only when what casts them has moved
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.enableDamping = false;
     this.orbit.zoomToCursor = true;
     this.orbit.addEventListener('change', () => this.touch());
     new ResizeObserver(() => this.touch()).observe(canvas);
-    const loop = () => { if (this.dirty) this.draw(); requestAnimationFrame(loop); };
+    const loop = () => { if (this.dirty && !this.hold) this.drawNow(); requestAnimationFrame(loop); };
     requestAnimationFrame(loop);
   }
 
@@ -49,7 +51,7 @@ export class View {
     if (quality === 'plain') { this.surface?.dispose(); this.surface = null; }
     else this.surface ??= new LiquidSurface();
     this.renderer.shadowMap.enabled = quality === 'fine';
-    this.renderer.shadowMap.needsUpdate = true;
+    for (const swatch of this.swatches()) swatch.shadowsStale = true;
     this.renderer.setPixelRatio(quality === 'fine' ? Math.min(devicePixelRatio, 2) : 1);
     for (const swatch of this.swatches())
       swatch.scene.traverse((thing) => { if (thing instanceof THREE.Mesh) (thing.material as THREE.Material).needsUpdate = true; });
@@ -61,24 +63,48 @@ export class View {
   // -1 .. 1 across the cloth; null: whole.
   setSection(place: number | null): void { this.cut = place; this.touch(); }
 
-  private bounds(): THREE.Box3 {
-    const all = new THREE.Box3();
-    for (const swatch of this.swatches()) if (!swatch.bounds.isEmpty()) all.union(swatch.bounds);
-    if (all.isEmpty()) all.set(new THREE.Vector3(-10, -10, -1), new THREE.Vector3(10, 10, 1));
-    return all;
+  // Cloths and solids of all swatches, and apart from them what liquid there was at the start.
+  private boxes(): THREE.Box3[] {
+    const boxes: THREE.Box3[] = [];
+    for (const swatch of this.swatches()) {
+      boxes.push(swatch.bounds, swatch.startingLiquid);
+      for (const cloth of swatch.cloths) boxes.push(cloth.mesh.geometry.boundingBox!);
+    }
+    const some = boxes.filter((box) => !box.isEmpty());
+    return some.length > 0 ? some : [new THREE.Box3(new THREE.Vector3(-10, -10, -1), new THREE.Vector3(10, 10, 1))];
   }
 
+  private bounds(): THREE.Box3 { return this.boxes().reduce((all, box) => all.union(box), new THREE.Box3()); }
+
   fit(direction: 'free' | 'top' | 'side' | 'keep' = 'free'): void {
-    const bounds = this.bounds(), centre = bounds.getCenter(new THREE.Vector3()), size = bounds.getSize(new THREE.Vector3());
     const from = direction === 'top' ? new THREE.Vector3(0, -0.001, 1) : direction === 'side' ? new THREE.Vector3(0, -1, 0.06)
       : direction === 'keep' ? this.camera.position.clone().sub(this.orbit.target).normalize() : new THREE.Vector3(0.32, -0.92, 0.78);
     from.normalize();
     const area = this.area(0);
-    const half = Math.tan((this.camera.fov * Math.PI) / 360), aspect = area.z / area.w;
-    // The box as seen from there, in both directions of the picture.
+    const half = Math.tan((this.camera.fov * Math.PI) / 360), wide = 0.94 * half * (area.z / Math.max(1, area.w)), high = 0.8 * half;
     const right = new THREE.Vector3().crossVectors(this.camera.up, from).normalize(), up = new THREE.Vector3().crossVectors(from, right);
-    const extent = (v: THREE.Vector3) => 0.5 * (Math.abs(v.x) * size.x + Math.abs(v.y) * size.y + Math.abs(v.z) * size.z);
-    const distance = Math.max(extent(right) / (half * aspect), extent(up) / half) * 1.04 + 0.55 * extent(from);
+    const corners: THREE.Vector3[] = [];
+    for (const { min, max } of this.boxes())
+      for (let k = 0; k < 8; ++k) corners.push(new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z));
+    // As near as every corner stays inside the picture; then the middle of what is seen to the middle of the picture.
+    const centre = this.bounds().getCenter(new THREE.Vector3());
+    let distance = 1;
+    for (let pass = 0; pass < 4; ++pass) {
+      distance = 0.5;
+      for (const corner of corners) {
+        const c = corner.clone().sub(centre);
+        distance = Math.max(distance, c.dot(from) + Math.max(Math.abs(c.dot(right)) / wide, Math.abs(c.dot(up)) / high));
+      }
+      for (const axis of [right, up]) {
+        let low = Infinity, top = -Infinity;
+        for (const corner of corners) {
+          const c = corner.clone().sub(centre), at = c.dot(axis) / (distance - c.dot(from));
+          low = Math.min(low, at);
+          top = Math.max(top, at);
+        }
+        centre.addScaledVector(axis, 0.5 * (low + top) * distance);
+      }
+    }
     this.orbit.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(from, distance);
     this.camera.near = distance / 200;
@@ -112,7 +138,7 @@ export class View {
     return new THREE.Vector4(Math.round(index * width), 0, Math.round(width), this.canvas.clientHeight);
   }
 
-  private draw(): void {
+  drawNow(): void {
     this.dirty = false;
     const start = performance.now();
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
@@ -147,6 +173,7 @@ export class View {
       if (this.cut === null) liquid.uniforms.uCut.value.set(0, 0, 0, 1);
       else liquid.uniforms.uCut.value.set(cut.normal.x, cut.normal.y, cut.normal.z, cut.constant);
     }
+    if (swatch.shadowsStale) this.renderer.shadowMap.needsUpdate = true, swatch.shadowsStale = false;
     const smooth = this.surface !== null && liquid !== null && liquid.count > 0;
     swatch.showBalls(!smooth);
     if (smooth) return this.surface!.render(this.renderer, swatch.scene, this.camera, liquid, area, this.dark);

@@ -23,10 +23,11 @@ export interface YarnLook {
   bar: { value: THREE.Vector4[] };       // 11 colours, opacity in w
   levels: { value: number };
   scale: { value: number };              // saturation steps
+  pixels: { value: number };             // height of the picture
 }
 
 const HEAD = `
-uniform sampler2D uPoints; uniform sampler2D uSaturation;
+uniform sampler2D uPoints; uniform sampler2D uSaturation; uniform float uPixels;
 uniform vec3 uAcross0; uniform vec3 uAcross1; uniform vec3 uNormal; uniform float uMiddle; uniform float uScale;
 attribute vec2 aPlace;              // ring of the piece, angle
 attribute vec4 aPiece;              // first point, first and last point of the yarn, radius
@@ -56,7 +57,7 @@ vec3 wetColour(vec3 dry, float saturation) {
 float wetRoughness(float saturation) { return mix(0.92, mix(0.95, 0.38, smoothstep(0.0, 0.9, saturation)), uNatural); }
 `;
 
-const VARYINGS = 'varying vec4 vYarn; varying float vSaturation; varying vec2 vSurface; varying float vOcclusion;';
+const VARYINGS = 'varying vec4 vYarn; varying float vSaturation; varying vec2 vSurface; varying float vOcclusion; varying float vFine;';
 
 export class Yarns {
   readonly group = new THREE.Group();
@@ -140,7 +141,7 @@ export class Yarns {
       uPoints: { value: this.pointTexture }, uSaturation: { value: this.saturationTexture },
       uAcross0: vector(info.u), uAcross1: vector(info.v), uNormal: vector(info.n),
       uMiddle: { value: MM * origin.dot(normal) },
-      uNatural: look.natural, uBar: look.bar, uScale: look.scale,
+      uNatural: look.natural, uBar: look.bar, uScale: look.scale, uPixels: look.pixels,
     };
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, uniforms);
@@ -155,7 +156,10 @@ export class Yarns {
           vSurface = vec2(aPlace.x + aPiece.x, aPlace.y);
           // Between the yarns less of the sky is seen: by the height above the middle of the sheet.
           float height = abs(dot(placed, uNormal) - uMiddle) / (2.0 * aPiece.w);
-          vOcclusion = mix(0.35, 1.0, smoothstep(0.0, 0.85, height));`);
+          // Yarns of a few pixels are seen at their mean brightness, or the cloth would flicker.
+          float pixels = uPixels * projectionMatrix[1][1] * aPiece.w / max(1e-6, -(modelViewMatrix * vec4(placed, 1.0)).z);
+          vFine = smoothstep(1.5, 6.0, pixels);
+          vOcclusion = mix(0.86, mix(0.4, 1.0, smoothstep(0.0, 0.85, height)), mix(0.25, 1.0, vFine));`);
       if (depthOnly) return;
       shader.fragmentShader = `
         ${WET_COLOUR}
@@ -165,7 +169,7 @@ export class Yarns {
           float wet = smoothstep(0.0, 0.9, vSaturation);
           // The lie of the twist: fine fibres winding around the yarn.
           float winding = sin(5.0 * vSurface.y + 2.6 * vSurface.x) * 0.5 + sin(11.0 * vSurface.y + 5.7 * vSurface.x) * 0.5;
-          float fibres = 1.0 + mix(0.035, 0.06, uNatural) * winding * (1.0 - 0.6 * wet);
+          float fibres = 1.0 + mix(0.035, 0.06, uNatural) * vFine * winding * (1.0 - 0.6 * wet);
           diffuseColor.rgb = wetColour(vYarn.rgb, vSaturation) * fibres * vOcclusion;`)
         .replace('#include <roughnessmap_fragment>', `
           float roughnessFactor = wetRoughness(vSaturation);`);

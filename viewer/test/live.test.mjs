@@ -147,6 +147,16 @@ test('a contact angle set with the slider reaches the solver at the next step, a
   assert.equal(Math.round(await page.evaluate(() => window.imbibe.panel.value('textiles[0].contact_angle'))), 120);
 });
 
+test('a change that comes while the simulation runs is in the physics at most two steps later', async () => {
+  await begin();
+  await ask(page, { type: 'run', swatch: 0 });
+  for (const humidity of [20, 40, 60]) {
+    const done = await ask(page, { type: 'set', swatch: 0, assign: [`air.humidity=${humidity} %`] });
+    assert.ok(done.step + 1 - done.arrived <= 2, JSON.stringify(done));
+    assert.equal(await page.evaluate(() => window.imbibe.counters.lastChange.step), done.step);
+  }
+});
+
 test('a value out of range is refused with its range', async () => {
   await begin();
   await refused(page, () => send(page, { type: 'set', swatch: 0, assign: ['air.humidity=150 %'] }), /100 %/);

@@ -11,6 +11,7 @@ export class Watcher {
   largest = 0;
   values = null;  // of the newest frame
   texts = new Map();
+  done = null;    // the newest answer to an ask
   columns = [];
   first = 0;      // performance.now() of the first frame
   #parts = [];
@@ -84,6 +85,7 @@ export class Watcher {
   #text(message) {
     this.texts.set(message.type, this.count(message.type) + 1);
     if (message.type === 'hello') this.columns = message.columns;
+    if (message.type === 'done') this.done = message;
   }
 
   #frame(payload) {

@@ -1,63 +1,75 @@
-// Measures of the live page: node viewer/tools/measure.mjs [SCENE] [VIEWERS]
-// Time to the first frame, bytes of frames, processor time of the server's thread per viewer, steps of the simulation with one and
-// with many viewers. Processor times, not wall times, so that other work on the machine counts little.
-import { gzipSync } from 'node:zlib';
-import { readdirSync, readFileSync } from 'node:fs';
+// Measures of the live page: node viewer/tools/measure.mjs [SCENE [VIEWERS [SECONDS [THREADS]]]]
+// Size of the page, time to the first frame, bytes of frames, frames per second, processor time of the server per viewer,
+// steps until a change is taken, and what many viewers cost the simulation: slices of 2 s with one viewer and with many,
+// in turn, so that both see the same stretch of the run. Viewers without a browser (../test/watcher.mjs); the time until
+// a browser's page has its first frame is taken last, where there is a browser.
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { openBrowser, openPage, root, startLive, until } from '../test/browser.mjs';
+import { gzipSync } from 'node:zlib';
+import { openBrowser, openPage, root, startLive } from '../test/browser.mjs';
+import { Watcher, processorSeconds } from '../test/watcher.mjs';
 
 const scene = process.argv[2] ?? 'scenes/quickstart/drop_on_cotton.yaml', viewers = Number(process.argv[3] ?? 20);
+const seconds = Number(process.argv[4] ?? 24), threads = process.argv[5] ?? '1';
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+const mean = (x) => x.reduce((a, b) => a + b, 0) / Math.max(1, x.length);
+
 const dist = join(root, 'viewer/dist');
-const files = readdirSync(dist, { recursive: true, withFileTypes: true }).filter((f) => f.isFile());
-const gzipped = files.reduce((sum, f) => sum + gzipSync(readFileSync(join(f.parentPath ?? f.path, f.name))).length, 0);
+const filesIn = (folder) => readdirSync(folder, { withFileTypes: true }).flatMap((f) => (f.isDirectory() ? filesIn(join(folder, f.name)) : [join(folder, f.name)]));
+const gzipped = existsSync(dist) ? filesIn(dist).reduce((sum, f) => sum + gzipSync(readFileSync(f)).length, 0) : 0;
+console.log(`${scene}, ${threads} threads, ${viewers} viewers`);
 console.log(`page: ${(gzipped / 1e3).toFixed(0)} kB gzipped`);
 
-// Seconds of processor time of each thread of a process.
-function cpu(pid) {
-  const times = new Map();
-  for (const tid of readdirSync(`/proc/${pid}/task`)) {
-    const fields = readFileSync(`/proc/${pid}/task/${tid}/stat`, 'utf8').split(') ')[1].split(' ');
-    times.set(Number(tid), (Number(fields[11]) + Number(fields[12])) / 100);
-  }
-  return times;
-}
+const started = performance.now();
+const server = await startLive(scene, '--speed', '0', '--run', '--threads', threads), pid = server.child.pid;
+const address = performance.now() - started;
+const first = await Watcher.open(server.url);
+await first.until(() => first.frames > 0);
+console.log(`first frame ${(performance.now() - started).toFixed(0)} ms after the start (address printed after ${address.toFixed(0)} ms)`);
 
-const started = Date.now();
-const server = await startLive(scene, '--speed', '0', '--run', '--threads', '1');
-const address = Date.now() - started;
-const browser = await openBrowser();
-const opened = Date.now();
-const page = await openPage(browser, server.url);
-console.log(`address printed after ${address} ms, first frame ${Date.now() - opened} ms after the page was asked for`);
-const open = (n) => page.evaluate((count) => {
-  window.others ??= [];
-  for (let i = 0; i < count; ++i) {
-    const other = { frames: 0, bytes: 0, largest: 0 };
-    const socket = new WebSocket(new URL('live', location.href.replace(/^http/, 'ws')));
-    socket.binaryType = 'arraybuffer';
-    socket.onmessage = (e) => {
-      if (typeof e.data === 'string' || new Uint8Array(e.data)[7] === 1) return;
-      ++other.frames; other.bytes += e.data.byteLength; other.largest = Math.max(other.largest, e.data.byteLength);
-    };
-    window.others.push(other);
-  }
-}, n);
-// For 8 s: processor time of the main thread (the server) and of all others (the simulation), steps and frames.
-async function watch(label) {
-  const pid = server.child.pid, a = cpu(pid), steps = await page.evaluate(() => window.imbibe.swatches[0].value('steps'));
-  const frames = await page.evaluate(() => window.imbibe.counters.frames + (window.others ?? []).reduce((s, o) => s + o.frames, 0));
-  await new Promise((done) => setTimeout(done, 8000));
-  const b = cpu(pid), more = await page.evaluate(() => window.imbibe.swatches[0].value('steps')) - steps;
-  const sent = await page.evaluate(() => window.imbibe.counters.frames + (window.others ?? []).reduce((s, o) => s + o.frames, 0)) - frames;
-  let own = 0, others = 0;
-  for (const [tid, t] of b) { const used = t - (a.get(tid) ?? 0); if (tid === pid) own += used; else others += used; }
-  console.log(`${label}: ${more} steps in ${others.toFixed(2)} s of the simulation's processor time (${(1e3 * others / more).toFixed(2)} ms a step); ` +
-    `server ${own.toFixed(2)} s for ${sent} frames, ${(1e6 * own / Math.max(sent, 1)).toFixed(0)} us a frame = ${(100 * 30 * own / Math.max(sent, 1)).toFixed(2)} % of a core at 30 Hz`);
+const slices = { one: [], many: [] };
+let others = [];
+for (const end = performance.now() + 1000 * seconds, begun = performance.now(); performance.now() < end;) {
+  const many = (slices.one.length + slices.many.length) % 2 === 1;
+  others = many ? await Promise.all(Array.from({ length: viewers - 1 }, () => Watcher.open(server.url))) : [];
+  await Promise.all(others.map((w) => w.until(() => w.frames > 0)));
+  const all = [first, ...others], steps = first.value('steps'), frames = all.map((w) => w.frames), cpu = processorSeconds(pid), at = performance.now();
+  await wait(2000);
+  const now = processorSeconds(pid), s = (performance.now() - at) / 1000, made = first.value('steps') - steps;
+  const sent = all.map((w, i) => w.frames - frames[i]);
+  others.forEach((w) => w.close());
+  if (first.value('steps') === steps) break;  // at its end
+  slices[many ? 'many' : 'one'].push({ rate: made / s, each: (now.others - cpu.others) / made, server: (now.server - cpu.server) / s,
+    frame: (now.server - cpu.server) / sent.reduce((a, b) => a + b, 0), fps: mean(sent) / s, time: (performance.now() - begun) / 1000 });
 }
-await watch('1 viewer');
-await open(viewers - 1);
-await watch(`${viewers} viewers`);
-const counters = await page.evaluate(() => window.imbibe.counters);
-console.log(`frames: ${(counters.bytes / counters.frames / 1e3).toFixed(1)} kB on average, ${(counters.largest / 1e3).toFixed(1)} kB the largest`);
-await browser.close();
+for (const [name, list] of Object.entries(slices)) {
+  const of = (key) => mean(list.map((x) => x[key]));
+  console.log(`${name === 'one' ? '1 viewer ' : `${viewers} viewers`}: ${of('rate').toFixed(1)} steps/s, ${(1e3 * of('each')).toFixed(3)} ms of processor time a step; ` +
+    `${of('fps').toFixed(1)} frames/s to each; server ${(100 * of('server')).toFixed(2)} % of a core, ${(1e6 * of('frame')).toFixed(0)} us a frame = ` +
+    `${(100 * 30 * of('frame')).toFixed(2)} % of a core per viewer at 30 Hz`);
+}
+// Neighbouring slices: what the run does meanwhile cancels out.
+const pairs = slices.many.map((m, i) => [slices.one[i], m, slices.one[i + 1]]).filter((p) => p[2]);
+const slower = (key) => 100 * mean(pairs.map(([a, m, b]) => (2 * m[key]) / (a[key] + b[key]) - 1));
+if (pairs.length > 0)
+  console.log(`with ${viewers} viewers: steps per second ${slower('rate').toFixed(1)} %, processor time of a step ${slower('each') > 0 ? '+' : ''}${slower('each').toFixed(1)} %`);
+console.log(`frames: ${(first.bytes / first.frames / 1e3).toFixed(1)} kB on average, ${(first.largest / 1e3).toFixed(1)} kB the largest`);
+
+// A slider: from its message to the simulation that takes it, in steps of that time.
+const took = [], steps = [];
+for (let i = 1; i <= 20; ++i) {
+  const sent = performance.now();
+  first.send({ type: 'set', assign: [`air.humidity=${40 + i} %`], ask: i });
+  await first.until(() => first.count('done') >= i);
+  took.push(performance.now() - sent);
+  steps.push(first.done.step - first.done.arrived + 1);  // the step under way when it came, and the one that it changes
+}
+console.log(`a change is in the physics ${mean(steps).toFixed(1)} steps after it came (at most ${Math.max(...steps)}); its answer takes ${mean(took).toFixed(0)} ms`);
+first.close();
+if (process.env.IMBIBE_MEASURE_PAGE) {
+  const browser = await openBrowser(), asked = performance.now();
+  await openPage(browser, server.url);
+  console.log(`a browser's page has its first frame ${(performance.now() - asked).toFixed(0)} ms after it was asked for`);
+  await browser.close();
+}
 await server.remove();

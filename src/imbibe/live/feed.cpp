@@ -69,8 +69,8 @@ std::string notice_event(int swatch, const std::string& message) {
   return dump({{"type", "notice"}, {"swatch", swatch}, {"message", message}});
 }
 
-std::string done_event(int swatch, double ask, std::uint64_t step, Real time) {
-  return dump({{"type", "done"}, {"swatch", swatch}, {"ask", ask}, {"step", step}, {"time", time}});
+std::string done_event(int swatch, double ask, std::uint64_t arrived, std::uint64_t step, Real time) {
+  return dump({{"type", "done"}, {"swatch", swatch}, {"ask", ask}, {"arrived", arrived}, {"step", step}, {"time", time}});
 }
 
 }  // namespace imbibe::live

@@ -50,6 +50,7 @@ class Outlet {
 struct Command {
   std::uint64_t viewer = all_viewers;
   Message message;
+  std::uint64_t arrived_at_step = 0;  // steps that were made when it came
 };
 
 class Feed {
@@ -70,7 +71,8 @@ class Feed {
 std::string error_event(int swatch, const std::string& about, const std::vector<Problem>& problems);
 std::string error_event(int swatch, const std::string& about, const std::string& message);
 std::string notice_event(int swatch, const std::string& message);
-// The message that asked with this number was carried out, or refused by an error told before, at this step.
-std::string done_event(int swatch, double ask, std::uint64_t step, Real time);
+// The message that asked with this number was carried out, or refused by an error told before, at this step; it had come
+// when `arrived` steps were made, so that a change of it holds from step `step` + 1 on.
+std::string done_event(int swatch, double ask, std::uint64_t arrived, std::uint64_t step, Real time);
 
 }  // namespace imbibe::live

@@ -181,7 +181,7 @@ void Replay::thread() {
       for (const Command& command : todo) {
         again = handle(command) || again;
         if (command.message.ask != 0)
-          outlet.tell(command.viewer, done_event(0, command.message.ask, frame_, frames_.times[frame_]));
+          outlet.tell(command.viewer, done_event(0, command.message.ask, frame_, frame_, frames_.times[frame_]));
       }
       if (again) {
         show(frame_);

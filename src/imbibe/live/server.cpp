@@ -38,7 +38,7 @@ struct Server::Connection {
   std::string in, out;
   std::size_t sent = 0;      // of out
   std::size_t largest = 0;   // message that it was sent
-  Clock::time_point opened = Clock::now(), last_frame{};
+  Clock::time_point opened = Clock::now(), frame_due{};
   MessageReader messages{longest_message};
   double tokens = 50;        // messages it may send now
   Clock::time_point tokens_at = Clock::now();
@@ -190,8 +190,9 @@ void Server::send_scenes(Connection& c) {
 
 void Server::send_frames(Connection& c) {
   if (c.viewer == 0 || c.closing || c.closed) return;
-  if (c.out.size() - c.sent > full_socket || seconds_since(c.last_frame) < 0.98 * c.frame_interval) return;
+  if (c.out.size() - c.sent > full_socket || Clock::now() < c.frame_due) return;
   send_scenes(c);
+  bool sent = false;
   for (std::size_t i = 0; i < feeds_.size(); ++i) {
     const auto snapshot = feeds_[i]->outlet.snapshot();
     if (!snapshot || snapshot == c.snapshots[i] || !c.geometry[i] || snapshot->generation != c.geometry[i]->generation)
@@ -200,8 +201,11 @@ void Server::send_frames(Connection& c) {
     const std::string frame = c.encoders[i].encode(*snapshot);
     send(c, Opcode::binary, frame);
     ++counts_.frames, counts_.frame_bytes += frame.size();
-    c.last_frame = Clock::now();
+    sent = true;
   }
+  if (!sent) return;
+  const auto interval = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(c.frame_interval));
+  c.frame_due = std::max(c.frame_due + interval, Clock::now());  // the rate is kept although frames come unevenly
 }
 
 void Server::take_messages(Connection& c) {
@@ -227,7 +231,7 @@ void Server::take_message(Connection& c, const std::string& text) {
     return send(c, Opcode::text, error_event(message.swatch, "message", message.problem));
   }
   const auto done = [&] {
-    if (message.ask != 0) send(c, Opcode::text, done_event(message.swatch, message.ask, 0, 0));
+    if (message.ask != 0) send(c, Opcode::text, done_event(message.swatch, message.ask, 0, 0, 0));
   };
   if (const auto* rate = std::get_if<RateMessage>(&message.body)) {
     c.frame_interval = 1 / std::min(rate->frames_per_second, options_.frames_per_second);
@@ -312,7 +316,7 @@ int Server::wait_ms() const {
     if (c->tokens < 1) wait = std::min(wait, 0.02);
     for (std::size_t i = 0; i < feeds_.size() && i < c->snapshots.size(); ++i)
       if (feeds_[i]->outlet.snapshot() != c->snapshots[i])
-        wait = std::min(wait, std::max(0.0, c->frame_interval - seconds_since(c->last_frame)));
+        wait = std::min(wait, std::max(0.0, -seconds_since(c->frame_due)));
   }
   return static_cast<int>(1000 * wait) + 1;
 }

@@ -48,6 +48,7 @@ void Session::keep_pace_with(std::shared_ptr<const std::atomic<Real>> other) {
 }
 
 void Session::post(Command command) {
+  command.arrived_at_step = steps_made_.load(std::memory_order_relaxed);
   {
     const std::scoped_lock hold(lock_);
     if (commands_.size() >= most_commands) return outlet.tell(command.viewer, error_event(setup_.swatch, "busy", "too many commands are waiting"));
@@ -83,6 +84,7 @@ void Session::begin() {
   begun_ = true;
   rebase();
   time_reached_->store(world_.time);
+  steps_made_.store(world_.step);
   speed_time_ = world_.time, speed_wall_ = Clock::now(), speed_ = 0;
   {
     const std::scoped_lock hold(lock_);
@@ -167,7 +169,9 @@ void Session::publish() {
   history_.add(snapshot->values);
   last_ = std::move(snapshot);
   outlet.publish(last_);
-  last_publish_ = Clock::now();
+  // Steps end when they end: due times that follow each other, not the last snapshot, keep the rate.
+  const auto every = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<Real>(setup_.snapshot_every));
+  publish_due_ = std::max(publish_due_ + every, Clock::now());
   told_ = true;
 }
 
@@ -194,11 +198,11 @@ void Session::after_step(const StepReport& report) {
   report_ = report;
   told_ = false;
   time_reached_->store(world_.time, std::memory_order_relaxed);
+  steps_made_.store(world_.step, std::memory_order_relaxed);
   if (steps_left_ > 0) --steps_left_;
   sample();
   check_limits();
-  const Real since = std::chrono::duration<Real>(Clock::now() - last_publish_).count();
-  if (outlet.viewers.load(std::memory_order_relaxed) > 0 && since >= setup_.snapshot_every) publish();
+  if (outlet.viewers.load(std::memory_order_relaxed) > 0 && Clock::now() >= publish_due_) publish();
 }
 
 // Whether the clock may go on now; if not, how long to wait for it (a command wakes earlier).
@@ -236,7 +240,7 @@ bool Session::between_steps(World& world, Real& until) {
       const Command& command = todo.front();
       changed = handle(command) || changed;
       if (command.message.ask != 0)
-        outlet.tell(command.viewer, done_event(setup_.swatch, command.message.ask, world_.step, world_.time));
+        outlet.tell(command.viewer, done_event(setup_.swatch, command.message.ask, command.arrived_at_step, world_.step, world_.time));
       todo.pop_front();
     }
     if (stop_) {  // what else was asked is for the world to come

@@ -87,8 +87,9 @@ class Session final : public Feed {
   int steps_left_ = 0;
   std::optional<std::pair<Scene, World>> next_;  // to go on with
 
-  Clock::time_point pace_wall_ = Clock::now(), last_publish_{}, speed_wall_ = Clock::now();
+  Clock::time_point pace_wall_ = Clock::now(), publish_due_{}, speed_wall_ = Clock::now();
   Real pace_time_ = 0, speed_time_ = 0, speed_ = 0;
+  std::atomic<std::uint64_t> steps_made_{0};
   std::shared_ptr<std::atomic<Real>> time_reached_ = std::make_shared<std::atomic<Real>>(0);  // 1e30: it will not move
 
   mutable std::mutex lock_;  // of what follows
