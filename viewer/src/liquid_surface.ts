@@ -34,10 +34,11 @@ vec3 at(vec2 uv, float d) {
   vec2 ndc = 2.0 * uv - 1.0;
   return vec3(ndc.x * d / uProjection[0][0], ndc.y * d / uProjection[1][1], -d);
 }
+const vec3 LAMP = vec3(0.395, -0.467, 0.791);  // unit; where the sun of Swatch stands
 vec3 sky(vec3 r) {
   float up = 0.5 + 0.5 * r.z;
   vec3 day = mix(vec3(0.45, 0.47, 0.50), vec3(0.93, 0.96, 1.0), smoothstep(0.2, 0.95, up));
-  float lamp = smoothstep(0.90, 0.985, dot(r, normalize(vec3(0.35, -0.45, 0.82))));
+  float lamp = smoothstep(0.90, 0.985, dot(r, LAMP));
   return mix(day, day * vec3(0.35, 0.38, 0.45), uDark) + 1.6 * lamp;
 }
 void main() {
@@ -68,7 +69,9 @@ void main() {
       vec3 mirrored = mat3(uToWorld) * reflect(-eye, n);
       vec3 colour = mix(through, sky(mirrored), clamp(fresnel, 0.0, 0.85));
       float rim = smoothstep(0.0, 0.35, facing);
-      gl_FragColor = vec4(colour * mix(0.55, 1.0, rim), 1.0);
+      // The lamp's own reflection is a few pixels wide on a drop: drawn wider, so that its shape is read.
+      float lit = 0.5 + 0.5 * dot(mat3(uToWorld) * n, LAMP), shine = pow(max(0.0, dot(mirrored, LAMP)), 70.0);
+      gl_FragColor = vec4(colour * mix(0.55, 1.0, rim) * mix(0.72, 1.08, lit) + 0.6 * shine * mix(1.0, 0.6, uDark), 1.0);
     }
   }
   #include <colorspace_fragment>

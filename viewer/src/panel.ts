@@ -26,7 +26,10 @@ export class Panel {
   constructor(private readonly element: HTMLElement, private readonly handlers: PanelHandlers) {}
 
   update(rows: ControlRow[]): void {
-    this.rows = rows;
+    const round = (x: number) => Number(x.toPrecision(9));  // 30 deg, not the 29.999999999999996 that radians make of it
+    this.rows = rows.map((row) => ({ ...row, ...(row.numbers && { numbers: row.numbers.map(round) }),
+      ...(row.stands_for !== undefined && { stands_for: round(row.stands_for) }) }));
+    rows = this.rows;
     const signature = this.visible().map((row) => `${row.path} ${row.choices?.length ?? 0}`).join('\n') + this.enabled;
     if (signature !== this.signature) { this.signature = signature; this.build(); }
     else this.refresh();

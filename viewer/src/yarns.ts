@@ -170,7 +170,7 @@ export class Yarns {
           // The lie of the twist: fine fibres winding around the yarn.
           float winding = sin(5.0 * vSurface.y + 2.6 * vSurface.x) * 0.5 + sin(11.0 * vSurface.y + 5.7 * vSurface.x) * 0.5;
           float fibres = 1.0 + mix(0.035, 0.06, uNatural) * vFine * winding * (1.0 - 0.6 * wet);
-          diffuseColor.rgb = wetColour(vYarn.rgb, vSaturation) * fibres * vOcclusion;`)
+          diffuseColor.rgb = wetColour(vYarn.rgb, vSaturation) * fibres * clamp(vOcclusion, 0.3, 1.0);  // at silhouettes it is extrapolated`)
         .replace('#include <roughnessmap_fragment>', `
           float roughnessFactor = wetRoughness(vSaturation);`);
     };
