@@ -49,7 +49,8 @@ TEST(Source, a_drop_is_a_ball_around_its_centre) {
   // The unfinished outermost shell may be lopsided by a few particles of 3750.
   EXPECT_LT(norm(mean), 0.05 * spacing);
   EXPECT_NEAR(farthest, radius, spacing);
-  EXPECT_NEAR(smallest_distance(liquid), spacing, 1e-3 * spacing);
+  // Body-centred lattice of edge 2^(1/3) spacings.
+  EXPECT_NEAR(smallest_distance(liquid), std::sqrt(0.75) * std::cbrt(2.0) * spacing, 1e-3 * spacing);
 }
 
 TEST(Source, a_box_is_filled_from_below_with_its_volume) {
@@ -57,7 +58,24 @@ TEST(Source, a_box_is_filled_from_below_with_its_volume) {
   Source box{.form = SourceForm::box, .centre = {0, 0, 5e-3}, .size = {6e-3, 4e-3, 10e-3}};
   EXPECT_EQ(emit(box, liquid, 0, 1).particles, 240u);
   const Bounds bounds = bounds_of(box);
+  Vec3 mean{};
+  for (const Float4& p : liquid.particles.position) {
+    EXPECT_TRUE(bounds.contains({p.x, p.y, p.z}));
+    mean += Vec3{p.x, p.y, p.z} / 240.0;
+  }
+  // 5 x 3 cells and 16 layers: nothing is left over; every other layer stands half a cell aside.
+  EXPECT_NEAR(mean.x, 0, 1e-9);
+  EXPECT_NEAR(mean.y, 0, 1e-9);
+  EXPECT_NEAR(mean.z, 5e-3, 1e-8);
+}
+
+TEST(Source, a_box_that_layers_do_not_fill_has_its_volume_in_its_bounds_and_no_particles_together) {
+  Liquid liquid = empty_liquid(1e-3);
+  Source box{.form = SourceForm::box, .centre = {0, 0, 0}, .size = {6.3e-3, 4.4e-3, 7.7e-3}};
+  EXPECT_EQ(emit(box, liquid, 0, 1).particles, 213u);
+  const Bounds bounds = bounds_of(box);
   for (const Float4& p : liquid.particles.position) EXPECT_TRUE(bounds.contains({p.x, p.y, p.z}));
+  EXPECT_GT(smallest_distance(liquid), 0.7e-3);
 }
 
 TEST(Source, a_dropper_lets_drops_fall_at_their_times_and_its_total_is_right_to_half_a_particle) {
@@ -136,7 +154,7 @@ TEST(Source, a_cap_stands_on_its_base_with_its_height_and_width) {
       widest = std::max<Real>(widest, std::hypot(p.x - 1e-3, p.y));
     }
     const Real dx = liquid.spacing();
-    EXPECT_NEAR(lowest, 2e-3 + 0.5 * dx, 1e-6);  // positions are single-precision
+    EXPECT_NEAR(lowest, 2e-3 + 0.25 * std::cbrt(2.0) * dx, 1e-6);  // positions are single-precision
     EXPECT_NEAR(highest, 2e-3 + radius * (1 - c), dx) << degrees_;
     EXPECT_NEAR(widest, b.upper.x - 1e-3, dx) << degrees_;
     EXPECT_NEAR(liquid.mass() / liquid.kind.density, 30e-9, 0.5 * dx * dx * dx);
@@ -145,7 +163,7 @@ TEST(Source, a_cap_stands_on_its_base_with_its_height_and_width) {
 
 TEST(Source, a_vortex_has_no_flow_through_the_sides_of_its_box_and_no_net_momentum) {
   Liquid liquid = empty_liquid();
-  Source box{.form = SourceForm::box, .centre = {0, 0, 0}, .size = {8e-3, 4e-3, 1e-3}};
+  Source box{.form = SourceForm::box, .centre = {0, 0, 0}, .size = {8e-3, 4e-3, 1.024e-3}};  // 8 layers
   box.vortex = 0.1;
   emit(box, liquid, 0, 1);
   Vec3 sum{};

@@ -10,27 +10,13 @@
 #include "imbibe/geometry/bounds.h"
 #include "imbibe/geometry/mesh_distance.h"
 #include "imbibe/liquid/neighbours.h"
+#include "imbibe/liquid/wall_push.h"
 
 namespace imbibe {
 
 namespace {
 
 Vec3 place(const Float4& p) { return {p.x, p.y, p.z}; }
-
-// pressure_gradient_ratio over q = d/H, from a table.
-float push_ratio(Real q) {
-  constexpr std::size_t entries = 256;
-  static const auto table = [] {
-    std::array<float, entries + 1> t{};
-    for (std::size_t k = 0; k <= entries; ++k) {
-      t[k] = static_cast<float>(pressure_gradient_ratio(static_cast<Real>(k) / entries, 1));
-    }
-    return t;
-  }();
-  const Real place = std::clamp(q, 0.0, 0.9999) * entries;
-  const auto k = static_cast<std::size_t>(place);
-  return table[k] + static_cast<float>(place - static_cast<Real>(k)) * (table[k + 1] - table[k]);
-}
 
 struct SolidSum {
   Real lambda = 0;
@@ -288,7 +274,6 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, Boundary::M
   out.normal = Vec3f(nearest.normal);
   out.lambda = static_cast<float>(sum.lambda);
   out.gradient = Vec3f(sum.gradient);
-  out.push = push_ratio(nearest.distance / support) * out.gradient;
   const Wall& wall = *w.wall;
   const WallAngles angles = wall.angles_at ? wall.angles_at(p) : angles_of(wall.material);
   out.cos_contact_angle = angles.cos_advancing;
@@ -319,7 +304,8 @@ struct NearestSamples {
   }
 
   // Weights each gradient by the liquid's part at the other walls; G and lambda together into `all`, P into push.
-  void combine(Float4& all, Float4& push) {
+  void combine(Float4& all, Float4& push, float support) {
+    constexpr std::array<float, walls_per_particle> touching{1, 1, 1};
     float open = 1;
     for (int k = 0; k < count; ++k) {
       float others = 1;
@@ -328,11 +314,13 @@ struct NearestSamples {
       }
       WallSample& s = sample[static_cast<std::size_t>(k)];
       open *= 1 - s.lambda;
-      s.gradient *= others, s.push *= others;
+      s.gradient *= others;
       all.x += s.gradient.x, all.y += s.gradient.y, all.z += s.gradient.z;
-      push.x += s.push.x, push.y += s.push.y, push.z += s.push.z;
     }
     all.w = 1 - open;
+    const std::span<WallSample> samples{sample.data(), static_cast<std::size_t>(count)};
+    set_pushes(samples, touching, support);
+    for (const WallSample& s : samples) push.x += s.push.x, push.y += s.push.y, push.z += s.push.z;
   }
 };
 
@@ -371,7 +359,7 @@ void sample_walls(Boundary& boundary, std::span<const Float4> position, std::siz
         }
         found.add(sample);
       }
-      if (found.count > 0) found.combine(boundary.wall[i], boundary.push[i]), ++near;
+      if (found.count > 0) found.combine(boundary.wall[i], boundary.push[i], kernel.support), ++near;
       if (sheets) boundary.side[i] = side;
       tile.samples.insert(tile.samples.end(), found.sample.begin(), found.sample.begin() + found.count);
       tile.first.push_back(static_cast<std::uint16_t>(tile.samples.size()));

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "imbibe/liquid/classes.h"
+#include "imbibe/liquid/wall_push.h"
 
 namespace imbibe {
 
@@ -49,12 +50,14 @@ void leave_dry_walls(Boundary& boundary, std::size_t i, const Vec3f& liquid, flo
   if (samples.empty()) return;
   const Float4& all = boundary.wall[i];
   const Vec3f gradient = liquid + Vec3f{all.x, all.y, all.z};
-  float contact[walls_per_particle], least = 1;
+  std::array<float, walls_per_particle> contact;
+  float least = 1;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     contact[k] = wall_contact(gradient, samples[k].normal, support);
     least = std::min(least, contact[k]);
   }
   if (least == 1) return;
+  set_pushes(samples, contact, support);
   Vec3f g{}, p{};
   float outside = 1;
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -169,29 +169,41 @@ struct LinePull {
   float activity = 0;   // 0..1
 };
 
-// Contact line at one wall (contact_angle.h). others: gradient of all other wetted walls.
+// |G| of one wall as it were without the others, whose liquid parts it is weighted with (boundary.h).
+float bare_gradient(const Stage& t, std::size_t i, const WallSample& wall) {
+  float others = 1;
+  for (const WallSample& other : t.f.boundary.samples(i))
+    if (other.wall != wall.wall) others *= std::max(1 - other.lambda, 0.1f);
+  return norm(wall.gradient) / others;
+}
+
+// Contact line at one wall (contact_angle.h). Other wetted walls count as liquid: in the corner of two walls liquid that
+// fills it has no line, and one that ends there has its line's own direction on each.
 LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall) {
   LinePull pull;
   const LiquidFields& f = t.f;
   const float support = f.neighbours.kernel.support;
-  Vec3f along = xyz(f.colour_gradient[i]);
+  Vec3f along = xyz(t.s.gradient[i]);
   along -= wall.normal * dot(along, wall.normal);
   const float length = norm(along), tau = length / std::max(1 - wall.lambda, 0.1f);
   // 0 for spray on the wall (little colour), inside (filled) and where nothing points along the wall.
-  const float activity =
+  float activity =
       ramp(f.colour[i], 0.22f, 0.28f) * ramp(-f.filling[i], -0.97f, -0.93f) * ramp(tau * support, 0.2f, 0.4f);
   if (activity == 0) return pull;
   const NearInterface seen = near_interface(t, i, wall);
   const Vec3f inward = along / length;
   const float kappa = seen.curvature;
-  // Without an interface in reach i belongs to a film of one layer: its angle is 0, it withdraws. Otherwise a receding
-  // line leaves such a film behind.
+  // Without an interface in reach a particle with little around it belongs to a film of one layer: its angle is 0, it
+  // withdraws. Otherwise a receding line leaves such a film behind. One with much around it lies in liquid that disorder
+  // has thinned (in corners between walls): pulled there, hollows would open.
+  activity *= seen.trust + (1 - seen.trust) * ramp(-f.filling[i], -0.85f, -0.75f);
+  if (activity == 0) return pull;
   const float extrapolated = std::clamp(
       -(dot(seen.normal, wall.normal) * (1 - 0.5f * t.depth() * kappa) + 0.5f * seen.height * kappa), -1.0f, 1.0f);
   const float cosine = 1 + seen.trust * (extrapolated - 1);
   pull.activity = activity;
   pull.curvature = seen.curvature;
-  const float strength = norm(wall.gradient);
+  const float strength = bare_gradient(t, i, wall);
   pull.length = 4 * strength * tau * f.volume * activity;
   pull.force = inward * (-t.gamma * pull.length *
                          unbalanced_cosine(cosine, wall.cos_contact_angle, wall.cos_receding_angle));
