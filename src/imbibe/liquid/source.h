@@ -6,7 +6,7 @@
 // A pipe lets go single particles at a steady rate, each from a random place inside its bore (counter-based random: seed,
 // number of the particle), with a constant velocity along it. Particles due since the last step are carried on by what
 // they would have flown. Where eight random places are all taken, the particle waits.
-// Particles are seeded on a lattice of the liquid's spacing. The supplied mass is exactly (number of particles) x
+// Particles are seeded on a lattice of the liquid's density, drops on a cubic one, boxes on a body-centred one. The supplied mass is exactly (number of particles) x
 // (particle mass); the number is the wanted volume over the particle volume, rounded, and the difference is carried to
 // the source's next drop, so a dropper's total is right to half a particle.
 // A drop that would overlap liquid already there waits until the place is free: never two particles in one place.
