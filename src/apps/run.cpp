@@ -129,7 +129,6 @@ class RunSession {
       liquid_s_ += report.liquid_wall_s, wetting_s_ += report.wetting_wall_s;
       moved_ += report.liquid_moved, wetted_ += report.wetting_ran;
       contact_ += report.contact;
-      peak_density_error_ = std::max(peak_density_error_, report.peak_density_error);
       progress.show(progress_of(world, report, plan.until, seconds_since(started_)));
       check_particles(world);
       check_memory(world);
@@ -311,7 +310,8 @@ class RunSession {
                 static_cast<unsigned long long>(moved_), wetting_s_, static_cast<unsigned long long>(wetted_), waited_s_);
     std::printf("  beside it   files and pictures %.1f s\n", writer_.working_s());
     if (moved_ > 0)
-      std::printf("  liquid      largest compression of a particle %.2g %%\n", 100 * peak_density_error_);
+      std::printf("  liquid      density error %.2g %% (mean), %.2g %% in the worst step; of one particle up to %.2g %%\n",
+                  100 * world_.density.mean(), 100 * world_.density.worst_mean, 100 * world_.density.worst_particle);
     if (contact_.textile_boxes > 0)
       std::printf("  contact     boxes tested: %llu of textiles, %llu of yarns, %llu of segments; %llu pieces, %llu triangles\n",
                   static_cast<unsigned long long>(contact_.textile_boxes),
@@ -350,7 +350,7 @@ class RunSession {
   std::optional<ChangeReplay> changes_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RunPictures> pictures_;
-  double liquid_s_ = 0, wetting_s_ = 0, waited_s_ = 0, peak_density_error_ = 0;
+  double liquid_s_ = 0, wetting_s_ = 0, waited_s_ = 0;
   std::uint64_t moved_ = 0, wetted_ = 0;
   ContactCounts contact_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_,

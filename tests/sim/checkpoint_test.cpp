@@ -1,5 +1,6 @@
 #include "imbibe/sim/checkpoint.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -209,7 +210,8 @@ TEST(Checkpoint, of_another_format_version_or_kind_of_file_is_refused_by_name) {
   const TemporaryFolder folder;
   write_checkpoint(folder / "c.h5", World{});
   std::string whole = text_of(folder / "c.h5");
-  whole.replace(whole.find("version 1"), 9, "version 9");
+  const std::string version = fmt::format("version {}", checkpoint_version);
+  whole.replace(whole.find(version), version.size(), "version 9");
   write_whole_file(folder / "new.h5", whole);
   World read;
   try {

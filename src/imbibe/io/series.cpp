@@ -18,6 +18,7 @@ SeriesRow series_row(const World& world, const StepReport& last_step, const Meas
   row.step_s = last_step.step_s;
   row.steps = world.step;
   row.density_error = last_step.peak_density_error;
+  row.density = world.density;
   Real yarn_volume = 0, weighted_saturation = 0;
   for (const Textile& textile : world.textiles) {
     const TextileMeasures m = measure(textile, world.air, params);
@@ -93,6 +94,9 @@ void visit_columns(const Row& r, Column&& column) {
   column("pore_saturation", r.pore_saturation);
   column("max_regain", r.max_regain);
   column("peak_density_error", r.density_error);
+  column("mean_density_error", r.density.mean());
+  column("worst_density_error", r.density.worst_mean);
+  column("worst_compression", r.density.worst_particle);
   column("contacts", r.contacts);
   column("absorbed_particles", r.absorbed_particles);
   column("released_particles", r.released_particles);

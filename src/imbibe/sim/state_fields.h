@@ -71,6 +71,12 @@ void visit_state(Visitor& v, AnyWorld& world) {
   v.value("calm_velocity", world.pace.calm_velocity);
   v.value("particles_at_rest", world.pace.particles_at_rest);
 
+  v.group("density");
+  v.value("steps", world.density.steps);
+  v.value("sum_of_means", world.density.sum_of_means);
+  v.value("worst_mean", world.density.worst_mean);
+  v.value("worst_particle", world.density.worst_particle);
+
   v.group("liquid");
   v.value("particle_mass", world.liquid.particle_mass);
   v.value("next_id", world.liquid.next_id);

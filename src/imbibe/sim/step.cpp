@@ -137,6 +137,11 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   report.step_bound = liquid.bound;
   report.density_error = liquid.density_error;
   report.peak_density_error = liquid.peak_density_error;
+  DensityRecord& density = world.density;
+  ++density.steps;
+  density.sum_of_means += liquid.density_error;
+  density.worst_mean = std::max(density.worst_mean, liquid.density_error);
+  density.worst_particle = std::max(density.worst_particle, liquid.peak_density_error);
   report.surface_force = liquid.surface_force;
   report.pressure_iterations = liquid.pressure_iterations;
   report.divergence_iterations = liquid.divergence_iterations;

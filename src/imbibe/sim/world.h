@@ -65,6 +65,15 @@ struct Pace {
   std::uint64_t particles_at_rest = 0;  // particles there were when it came to rest
 };
 
+// How well the liquid kept its density, over the SPH steps since the start. Errors are relative, at the start of a step.
+struct DensityRecord {
+  std::uint64_t steps = 0;    // SPH steps
+  Real sum_of_means = 0;      // of each step's mean |error| over the particles
+  Real worst_mean = 0;        // the largest of these means
+  Real worst_particle = 0;    // the largest compression of one particle
+  Real mean() const { return steps > 0 ? sum_of_means / static_cast<Real>(steps) : 0; }
+};
+
 // Where all the liquid is, kg. free + sorbed + yarn + pore + cell + waiting - owed + evaporated + left
 // = initial + supplied.
 struct Ledger {
@@ -89,6 +98,7 @@ struct World {
   std::vector<Prop> props;
   Ledger ledger;
   Pace pace;
+  DensityRecord density;
   Bounds domain;            // a particle outside is removed and counted in left_kg
 };
 
