@@ -46,9 +46,9 @@ void wet(Textile& textile) {
     Real s = greatest * std::pow(inside, power);
     if (i >= m.segments) {
       const Real pressure = filling_pressure(m, 0, s).value;
-      s = saturation_at({m.entry[i], m.size_index[i], m.open[i], m.overfill[i]}, pressure);
+      s = saturation_at({m.entry(i), m.size_index(i), m.open(i), m.overfill(i)}, pressure);
     }
-    textile.contents.liquid_kg[i] = s * m.volume[i] * m.liquid.density;
+    textile.contents.liquid_kg[i] = s * m.volume(i) * m.liquid.density;
   }
 }
 

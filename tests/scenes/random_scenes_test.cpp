@@ -84,7 +84,7 @@ void expect_sound(const World& world) {
     for (std::size_t k = 0; k < textile.fabric->network.nodes(); ++k) {
       const Real s = saturation(*textile.model, textile.contents, k);
       ASSERT_GE(s, -1e-30);  // an emptied node keeps the rounding of its last flow
-      ASSERT_LE(s, 1 + textile.model->overfill[k] * (1 + 1e-6) + 1e-9);
+      ASSERT_LE(s, 1 + textile.model->overfill(k) * (1 + 1e-6) + 1e-9);
     }
     for (const Real kg : textile.contents.sorbed_kg) ASSERT_TRUE(std::isfinite(kg) && kg >= 0);
   }

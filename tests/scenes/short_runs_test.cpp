@@ -30,7 +30,7 @@ TEST_P(ShippedScene, KeepsItsBooksAndBoundsInShortForm) {
         const Real s = saturation(*textile.model, textile.contents, k);
         ASSERT_GE(s, -1e-30);  // an emptied node keeps the rounding of its last flow
         // The stated over-full share of the node: a bulging meniscus.
-        ASSERT_LE(s, 1 + textile.model->overfill[k] * (1 + 1e-6) + 1e-9);
+        ASSERT_LE(s, 1 + textile.model->overfill(k) * (1 + 1e-6) + 1e-9);
       }
   };
   run(world, {.until = until, .every = until / 4, .max_steps = 0, .step = {}}, hooks);

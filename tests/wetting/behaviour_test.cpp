@@ -34,14 +34,14 @@ TEST(Swelling, KeepsTheCellsVolume) {
   WettingParams params;
   const WettingModel m = build_wetting_model(shirting(9, shirting_yarn(cotton_fibre())), params, {});
   Contents dry = conditioned_contents(m, Air{}), wet = dry;
-  for (std::size_t s = 0; s < m.segments; ++s) wet.sorbed_kg[s] = m.dry_mass[s] * m.yarns[0].swelling_regain;
+  for (std::size_t s = 0; s < m.segments; ++s) wet.sorbed_kg[s] = m.dry_mass(s) * m.yarns[0].swelling_regain;
   const std::size_t pore = m.segments + 4 * 8 + 4, segment = 4 * 9 + 4;  // inside the sheet: 8 segments, 4 pores
-  EXPECT_NEAR(current_volume(m, dry, pore), m.volume[pore], 1e-9 * m.volume[pore]);
-  const Real growth = current_volume(m, wet, segment) / m.volume[segment] - 1;
+  EXPECT_NEAR(current_volume(m, dry, pore), m.volume(pore), 1e-9 * m.volume(pore));
+  const Real growth = current_volume(m, wet, segment) / m.volume(segment) - 1;
   EXPECT_GT(growth, 0.2);
   Real yarns = 0;
-  for (const Index s : m.segments_of_pore(pore - m.segments)) yarns += 0.25 * m.yarn_volume[s] * growth;
-  EXPECT_NEAR(m.volume[pore] - current_volume(m, wet, pore), yarns, 1e-12 * m.volume[pore]);
+  for (const Index s : m.segments_of_pore(pore - m.segments)) yarns += 0.25 * m.yarn_volume(s) * growth;
+  EXPECT_NEAR(m.volume(pore) - current_volume(m, wet, pore), yarns, 1e-12 * m.volume(pore));
 }
 
 TEST(Swelling, SqueezesTheSurplusOutOfAFullClothAndBooksIt) {
@@ -49,7 +49,7 @@ TEST(Swelling, SqueezesTheSurplusOutOfAFullClothAndBooksIt) {
   params.evaporation = false;
   const WettingModel m = build_wetting_model(shirting(9, shirting_yarn(cotton_fibre())), params, {});
   Contents c = conditioned_contents(m, Air{});
-  for (std::size_t i = 0; i < m.nodes(); ++i) c.liquid_kg[i] = m.liquid.density * m.volume[i] * (1 + m.overfill[i]);
+  for (std::size_t i = 0; i < m.nodes(); ++i) c.liquid_kg[i] = m.liquid.density * m.volume(i) * (1 + m.overfill(i));
   const Real before = total_kg(m, c);
   Real out = 0, now = 0, dt = 0.1;
   while (now < 1800) {
@@ -63,7 +63,7 @@ TEST(Swelling, SqueezesTheSurplusOutOfAFullClothAndBooksIt) {
   // The fibres reached full swelling (k = 4.9e-3 /s), and what they took in they also took from the pores' room:
   // no node stands above its rim.
   for (std::size_t i = 0; i < m.segments; ++i) EXPECT_GT(node_regain(m, c, i), 0.99 * m.yarns[0].swelling_regain);
-  for (std::size_t i = 0; i < m.nodes(); ++i) EXPECT_LE(saturation(m, c, i), 1 + m.overfill[i] + 1e-9);
+  for (std::size_t i = 0; i < m.nodes(); ++i) EXPECT_LE(saturation(m, c, i), 1 + m.overfill(i) + 1e-9);
 }
 
 TEST(Release, AnOverFullPoreGivesOffWhatStandsAboveItsOpeningPressure) {
@@ -73,11 +73,11 @@ TEST(Release, AnOverFullPoreGivesOffWhatStandsAboveItsOpeningPressure) {
   const WettingModel m = build_wetting_model(shirting(5, shirting_yarn(wool_fibre(100))), params, {});
   Contents c = conditioned_contents(m, Air{});
   const std::size_t pore = m.segments + 5;
-  c.liquid_kg[pore] = 1.5 * m.liquid.density * m.volume[pore];
+  c.liquid_kg[pore] = 1.5 * m.liquid.density * m.volume(pore);
   const WettingReport report = step_wetting(m, c, {}, {}, Air{}, {}, 1);
   ASSERT_FALSE(report.released.empty());
   EXPECT_EQ(report.released[0].node, pore);
-  EXPECT_LE(node_pressure(m, c, pore), m.open[pore] * (1 + 1e-6));
+  EXPECT_LE(node_pressure(m, c, pore), m.open(pore) * (1 + 1e-6));
 }
 
 TEST(Release, SaysByHowMuchThePressureAtTheLowerFaceIsAboveTheOpeningAndHowFastLiquidComes) {
@@ -88,14 +88,14 @@ TEST(Release, SaysByHowMuchThePressureAtTheLowerFaceIsAboveTheOpeningAndHowFastL
   const std::size_t pore = m.segments + 5;
   for (const Real gravity : {0.0, -9.81, 9.81}) {
     Contents c = conditioned_contents(m, Air{});
-    c.liquid_kg[pore] = 1.21 * m.liquid.density * m.volume[pore];
+    c.liquid_kg[pore] = 1.21 * m.liquid.density * m.volume(pore);
     const WettingReport report = step_wetting(m, c, {}, {}, Air{}, {0, 0, gravity}, 1e-5);
     ASSERT_EQ(report.released.size(), 1u);
     const Real head = m.liquid.density * std::abs(gravity) * 0.5 * m.thickness;
-    const Real at_start = filling_pressure(m, pore, 1.21).value + head - m.open[pore];
+    const Real at_start = filling_pressure(m, pore, 1.21).value + head - m.open(pore);
     EXPECT_GT(report.released[0].excess_pressure, 0);
     EXPECT_LT(report.released[0].excess_pressure, at_start);
-    EXPECT_NEAR(report.released[0].flow, m.release_conductance[pore] * report.released[0].excess_pressure,
+    EXPECT_NEAR(report.released[0].flow, m.release_conductance(pore) * report.released[0].excess_pressure,
                 1e-12 * report.released[0].flow);
   }
 }
@@ -106,7 +106,7 @@ TEST(Supply, LiquidGoesBackWhereThePressureAboveIsLower) {
   params.sorption = SorptionModel::none;
   const WettingModel m = build_wetting_model(shirting(7, shirting_yarn(cotton_fibre())), params, {});
   Contents c = conditioned_contents(m, Air{});
-  for (std::size_t i = 0; i < m.nodes(); ++i) c.liquid_kg[i] = m.liquid.density * m.volume[i] * (1 + 0.9 * m.overfill[i]);
+  for (std::size_t i = 0; i < m.nodes(); ++i) c.liquid_kg[i] = m.liquid.density * m.volume(i) * (1 + 0.9 * m.overfill(i));
   const std::vector<FaceSupply> supplies{{.node = static_cast<Index>(m.segments + 10), .wetted_share = 1, .pressure = 0}};
   std::vector<Real> taken(1);
   const Real before = total_kg(m, c);
@@ -126,7 +126,7 @@ TEST(Hysteresis, HoldsTheStainBackAndKeepsTheMass) {
     const WettingModel m = build_wetting_model(yarn_strip(80, 0.3e-3, shirting_yarn(polyester_fibre())), params, {});
     Contents c = conditioned_contents(m, Air{});
     for (std::size_t i = 0; i < 10; ++i) {
-      c.liquid_kg[i] = m.liquid.density * m.volume[i];
+      c.liquid_kg[i] = m.liquid.density * m.volume(i);
       if (on) c.reached_saturation[i] = 1;
     }
     const Real before = total_kg(m, c);
@@ -153,7 +153,7 @@ TEST(Shells, AndTheLinearFormEndAtTheSameSorbedWater) {
     params.sorption = model;
     const WettingModel m = build_wetting_model(yarn_strip(4, 1e-3, paper_yarn(wool_fibre())), params, {});
     Contents c = conditioned_contents(m, Air{});
-    for (std::size_t i = 0; i < 4; ++i) c.liquid_kg[i] = m.liquid.density * m.volume[i];
+    for (std::size_t i = 0; i < 4; ++i) c.liquid_kg[i] = m.liquid.density * m.volume(i);
     const Real before = total_kg(m, c);
     for (int i = 0; i < 50; ++i) step_wetting(m, c, {}, {}, Air{}, {}, 300);
     EXPECT_NEAR(total_kg(m, c), before, 1e-12 * before);
@@ -174,7 +174,7 @@ TEST(Monofilament, SorbsFromThePoresBesideItAndCarriesNothing) {
   yarn.monofilament = true;
   const WettingModel m = build_wetting_model(paper_sheet(4, yarn), params, {});
   Contents c = conditioned_contents(m, Air{});
-  for (std::size_t i = m.segments; i < m.nodes(); ++i) c.liquid_kg[i] = 0.8 * m.liquid.density * m.volume[i];
+  for (std::size_t i = m.segments; i < m.nodes(); ++i) c.liquid_kg[i] = 0.8 * m.liquid.density * m.volume(i);
   const Real before = total_kg(m, c), sorbed = total_sorbed_kg(m, c);
   EXPECT_NEAR(saturation(m, c, 0), 0, 1e-12);  // conditioned is dry
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(step_wetting(m, c, {}, {}, Air{}, {}, 100).converged);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "imbibe/core/parallel.h"
 #include "imbibe/core/random.h"
@@ -14,11 +15,14 @@ namespace {
 GraphMatrix random_matrix(Index n, std::uint64_t seed) {
   GraphMatrix m;
   m.diagonal.assign(n, 1);
+  m.scale.assign(n, 1);
   m.row_start = {0};
   for (Index i = 0; i < n; ++i) {
-    for (const Index j : {(i + 1) % n, (i + n - 1) % n, (i * 7 + 3) % n}) {
+    std::array<Index, 3> columns{(i + 1) % n, (i + n - 1) % n, (i * 7 + 3) % n};
+    std::ranges::sort(columns);
+    for (const Index j : columns) {
       if (j == i) continue;
-      const Real value = -10 * uniform({.seed = seed, .id = i, .step = j});
+      const auto value = static_cast<float>(-10 * uniform({.seed = seed, .id = i, .step = j}));
       m.column.push_back(j);
       m.value.push_back(value);
       m.diagonal[j] -= value;

@@ -53,7 +53,7 @@ Real released_kg(const WettingReport& report) {
 
 void fill_layer(const YarnNetwork& net, const WettingModel& m, Contents& c, int layer, Real yarns, Real pores = 0) {
   for (std::size_t i = 0; i < net.nodes(); ++i)
-    if (net.layer_of(i) == layer) c.liquid_kg[i] = (net.is_pore(i) ? pores : yarns) * m.liquid.density * m.volume[i];
+    if (net.layer_of(i) == layer) c.liquid_kg[i] = (net.is_pore(i) ? pores : yarns) * m.liquid.density * m.volume(i);
 }
 
 WettingReport advance(const WettingModel& m, Contents& c, Real until, const Vec3& gravity = none,
@@ -89,11 +89,11 @@ TEST(FaceBack, KeepsTheMassAndTheMaximumPrinciple) {
     const WettingModel m = model_of(net, law);
     Contents c = conditioned_contents(m, Air{});
     for (std::size_t i = 0; i < net.nodes(); ++i)
-      c.liquid_kg[i] = uniform({7, i, 0}) * (net.is_pore(i) ? 0.3 : 0.95) * m.liquid.density * m.volume[i];
+      c.liquid_kg[i] = uniform({7, i, 0}) * (net.is_pore(i) ? 0.3 : 0.95) * m.liquid.density * m.volume(i);
     const auto extremes = [&] {
       std::pair<Real, Real> range{1e30, -1e30};
       for (std::size_t i = 0; i < net.nodes(); ++i)
-        if (m.volume[i] > 0) {
+        if (m.volume(i) > 0) {
           const Real p = node_pressure(m, c, i);
           range = {std::min(range.first, p), std::max(range.second, p)};
         }
@@ -145,17 +145,17 @@ TEST(FaceBack, ARejectingLayerBetweenStaysDryAndKeepsTheLayerBelowDryUntilItsBre
   const YarnNetwork net = stack({{.count = 1, .fibre = ""}, {.count = 1, .fibre = "polypropylene"}, {.count = 1, .fibre = ""}});
   const WettingModel m = model_of(net);
   const std::size_t pore = m.pores / 2;  // of the layer between
-  ASSERT_FALSE(m.pore_wets[pore]);
+  ASSERT_FALSE(m.pore_wets(pore));
   Contents c = conditioned_contents(m, Air{});
-  advance(m, c, 10, down, water_above(net, 0.9 * m.pore_breakthrough[pore]));
+  advance(m, c, 10, down, water_above(net, 0.9 * m.pore_breakthrough(pore)));
   // Its yarns are full, and so are its pores.
   Real room = 0;
   for (std::size_t i = 0; i < net.nodes(); ++i)
-    if (net.layer_of(i) == 0) room += m.liquid.density * m.volume[i];
+    if (net.layer_of(i) == 0) room += m.liquid.density * m.volume(i);
   EXPECT_GT(layer_kg(net, c, 0), 0.99 * room);
   EXPECT_EQ(layer_kg(net, c, 1), 0);
   EXPECT_EQ(layer_kg(net, c, 2), 0);
-  advance(m, c, 10, down, water_above(net, 1.2 * m.pore_breakthrough[pore]));
+  advance(m, c, 10, down, water_above(net, 1.2 * m.pore_breakthrough(pore)));
   EXPECT_GT(layer_kg(net, c, 1), 0);
   EXPECT_GT(layer_kg(net, c, 2), 0);
 }
@@ -191,10 +191,10 @@ TEST(FaceBack, OnlyOuterLayersSeeTheAirAndGiveLiquidOff) {
   const YarnNetwork net = stack({{.count = 3, .fibre = ""}});
   const WettingModel m = model_of(net);
   Real area[3] = {0, 0, 0};
-  for (std::size_t s = 0; s < m.segments; ++s) area[net.layer_of(s)] += m.vapour_area[s];
-  EXPECT_NEAR(area[0], m.area, 1e-12 * m.area);
+  for (std::size_t s = 0; s < m.segments; ++s) area[net.layer_of(s)] += m.vapour_area(s);
+  EXPECT_NEAR(area[0], m.area, 1e-9 * m.area);  // a kind's values have 30 bits
   EXPECT_EQ(area[1], 0);
-  EXPECT_NEAR(area[2], m.area, 1e-12 * m.area);
+  EXPECT_NEAR(area[2], m.area, 1e-9 * m.area);
   Contents c = conditioned_contents(m, Air{});
   for (int layer = 0; layer < 3; ++layer) fill_layer(net, m, c, layer, 1.0, 1.19);
   const Real before = total_kg(c);

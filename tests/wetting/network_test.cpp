@@ -57,8 +57,8 @@ Contents random_contents(const WettingModel& m, std::uint64_t seed) {
   for (std::size_t i = 0; i < m.nodes(); ++i) {
     const Real u = uniform({.seed = seed, .id = i}), v = uniform({.seed = seed, .id = i}, 1);
     // A third dry, the rest anywhere up to the top of the over-full range.
-    const Real s = u < 0.33 ? 0 : v * (1 + m.overfill[i]);
-    c.liquid_kg[i] = s * m.liquid.density * m.volume[i];
+    const Real s = u < 0.33 ? 0 : v * (1 + m.overfill(i));
+    c.liquid_kg[i] = s * m.liquid.density * m.volume(i);
   }
   return c;
 }
@@ -101,10 +101,10 @@ TEST(OneTube, StopsAtJurinsHeight) {
 TEST(OneTube, DoesNotFillAboveNinetyDegreesUntilBreakthrough) {
   const WettingModel m = build_wetting_model(one_tube(0.1e-3, 0.3e-3, cotton_fibre(110)), transport_only(), {});
   Contents c = conditioned_contents(m, Air{});
-  Fed fed = feed({0}, 0.98 * m.pore_breakthrough[0]);
+  Fed fed = feed({0}, 0.98 * m.pore_breakthrough(0));
   step_wetting(m, c, fed.supplies, fed.taken, Air{}, {}, 1);
   EXPECT_EQ(fed.taken[0], 0);
-  fed.supplies[0].pressure = 1.02 * m.pore_breakthrough[0];
+  fed.supplies[0].pressure = 1.02 * m.pore_breakthrough(0);
   step_wetting(m, c, fed.supplies, fed.taken, Air{}, {}, 1e-4);
   EXPECT_GT(fed.taken[0], 0);
 }
@@ -163,7 +163,7 @@ TEST(OneYarn, TakesUpKuenzelsWaterInTheSquareRootOfTime) {
 TEST(OneYarn, TiltedColumnComesToRestAtHydrostaticSuction) {
   const WettingModel m = build_wetting_model(yarn_strip(100, 1e-3, shirting_yarn(polyester_fibre())), transport_only(), {});
   Contents c = conditioned_contents(m, Air{});
-  for (std::size_t i = 0; i < 100; ++i) c.liquid_kg[i] = 0.9 * m.liquid.density * m.volume[i];
+  for (std::size_t i = 0; i < 100; ++i) c.liquid_kg[i] = 0.9 * m.liquid.density * m.volume(i);
   Real dt = 1;
   for (int i = 0; i < 60; ++i, dt *= 1.3) step_wetting(m, c, {}, {}, Air{}, {-9.81, 0, 0}, dt);
   for (std::size_t i = 1; i < 100; ++i) {
@@ -188,7 +188,7 @@ TEST(Network, KeepsItsMassAndItsBoundsFromMicrosecondsToHours) {
         for (std::size_t i = 0; i < m.nodes(); ++i) {
           const Real s = saturation(m, c, i);
           EXPECT_GE(s, 0);
-          EXPECT_LE(s, 1 + m.overfill[i] + 1e-12);
+          EXPECT_LE(s, 1 + m.overfill(i) + 1e-12);
         }
       }
     }
@@ -275,7 +275,7 @@ TEST(Network, BooksEveryDropUnderAnySupplyLawAndStep) {
     EXPECT_NEAR(total_kg(m, c) + released_kg(report) + report.evaporated_kg, before + given, 1e-12 * before) << seed;
     for (std::size_t i = 0; i < m.nodes(); ++i) {
       EXPECT_GE(c.liquid_kg[i], 0) << seed;
-      EXPECT_LE(saturation(m, c, i), 1 + m.overfill[i] + 1e-12) << seed;
+      EXPECT_LE(saturation(m, c, i), 1 + m.overfill(i) + 1e-12) << seed;
     }
   }
 }
@@ -295,7 +295,7 @@ Contents full_disc(const WettingModel& m, Real radius) {
   Contents c = conditioned_contents(m, Air{});
   for (std::size_t i = 0; i < m.nodes(); ++i) {
     const Vec3& x = m.centre[i];
-    if (x.x * x.x + x.y * x.y <= radius * radius) c.liquid_kg[i] = m.liquid.density * m.volume[i];
+    if (x.x * x.x + x.y * x.y <= radius * radius) c.liquid_kg[i] = m.liquid.density * m.volume(i);
   }
   return c;
 }
@@ -399,7 +399,7 @@ Real extent(const Stain& stain, Real degrees_from_x, Real half_width, Real thres
   const Real cx = std::cos(radians(degrees_from_x)), cy = std::sin(radians(degrees_from_x));
   Real farthest = 0;
   for (std::size_t i = 0; i < stain.model.segments; ++i) {
-    if (stain.model.volume[i] <= 0 || saturation(stain.model, stain.contents, i) <= threshold) continue;
+    if (stain.model.volume(i) <= 0 || saturation(stain.model, stain.contents, i) <= threshold) continue;
     const Vec3& x = stain.model.centre[i];
     if (std::abs(x.x * cy - x.y * cx) > half_width) continue;
     farthest = std::max(farthest, x.x * cx + x.y * cy);
@@ -496,7 +496,7 @@ TEST(Drying, TwoFacesGive218GramsPerSquareMetreAndHour) {
   for (const Fibre& fibre : {cotton_fibre(), polyester_fibre(), wool_fibre()}) {
     const WettingModel m = build_wetting_model(shirting(12, shirting_yarn(fibre)), params, {});
     Contents c = conditioned_contents(m, Air{});
-    for (std::size_t i = 0; i < m.segments; ++i) c.liquid_kg[i] = 0.6 * m.liquid.density * m.volume[i];
+    for (std::size_t i = 0; i < m.segments; ++i) c.liquid_kg[i] = 0.6 * m.liquid.density * m.volume(i);
     Real evaporated = 0;
     for (int i = 0; i < 30; ++i) evaporated += step_wetting(m, c, {}, {}, Air{}, {}, 2).evaporated_kg;
     EXPECT_NEAR(evaporated / m.area * 60 * 1000, 218, 0.01 * 218) << fibre.name;
@@ -507,7 +507,7 @@ TEST(Drying, GoesToTheConditionedStateInHoursWithGrowingSteps) {
   const WettingModel m = build_wetting_model(shirting(20, shirting_yarn(cotton_fibre())), WettingParams{}, {});
   Contents c = conditioned_contents(m, Air{});
   const Real conditioned = total_sorbed_kg(m, c);
-  for (std::size_t i = 0; i < m.segments / 2; ++i) c.liquid_kg[i] = 0.8 * m.liquid.density * m.volume[i];
+  for (std::size_t i = 0; i < m.segments / 2; ++i) c.liquid_kg[i] = 0.8 * m.liquid.density * m.volume(i);
   const Real before = total_kg(m, c);
   Real now = 0, dt = suggested_wetting_step(m, c, Air{}, {}), evaporated = 0;
   int steps = 0;

@@ -29,7 +29,7 @@ TEST(Spreading, OfASlugFollowsBarenblattsExponent) {
     const WettingModel m = build_wetting_model(yarn_strip(count, 0.1e-3, shirting_yarn(cotton_fibre())), params, {});
     Contents c = conditioned_contents(m, Air{});
     const std::size_t middle = count / 2;
-    for (std::size_t i = middle - 6; i <= middle + 6; ++i) c.liquid_kg[i] = 0.9 * m.liquid.density * m.volume[i];
+    for (std::size_t i = middle - 6; i <= middle + 6; ++i) c.liquid_kg[i] = 0.9 * m.liquid.density * m.volume(i);
     const auto width = [&] {
       Real moment = 0, mass = 0;
       for (std::size_t i = 0; i < count; ++i) {
@@ -108,10 +108,10 @@ TEST(Pores, DoNotPassLiquidToEachOtherBelowTheOpeningPressure) {
   const WettingModel m = build_wetting_model(shirting(5, shirting_yarn(wool_fibre(100))), transport_only(), {});
   Contents c = conditioned_contents(m, Air{});
   const std::size_t pore = m.segments + 5;
-  c.liquid_kg[pore] = 0.9 * m.liquid.density * m.volume[pore];
+  c.liquid_kg[pore] = 0.9 * m.liquid.density * m.volume(pore);
   const Real held = c.liquid_kg[pore];
   ASSERT_GT(node_pressure(m, c, pore), 0);
-  ASSERT_LT(node_pressure(m, c, pore), m.open[pore]);
+  ASSERT_LT(node_pressure(m, c, pore), m.open(pore));
   const WettingReport report = step_wetting(m, c, {}, {}, Air{}, {}, 60);
   EXPECT_EQ(c.liquid_kg[pore], held);
   EXPECT_TRUE(report.released.empty());

@@ -272,7 +272,7 @@ void check_counts(const Plan& plan, const FabricSpec& spec, Real scale, const st
   const double ends = count_yarns(plan.warp, spec.size[0], scale), picks = count_yarns(plan.weft, spec.size[1], scale);
   const auto layers = static_cast<double>(plan.layer_fibre.size());
   const double points = layers * ((2 * ends * picks) * spec.points_per_segment + ends + picks);
-  if (std::max(points, layers * 3 * ends * picks) < most_nodes) return;
+  if (points < most_nodes && layers * 3 * ends * picks < static_cast<double>(most_network_nodes)) return;
   problems.push_back(Problem{"", 0, 0, joined(key, "size"),
                              fmt::format("{:.0f} ends x {:.0f} picks are {:.3g} segments with {:.3g} points: more than "
                                          "{:.3g} cannot be numbered", ends, picks, layers * 2 * ends * picks, points, most_nodes)});

@@ -40,9 +40,14 @@ enum class EdgeKind : std::uint8_t {
   face_back,     // segments of two layers whose crowns touch
 };
 
+// Node numbers stay below 2^29, so that an edge is 8 bytes.
+inline constexpr std::size_t most_network_nodes = std::size_t{1} << 29;
 struct Edge {
-  Index a = 0, b = 0;  // nodes
-  EdgeKind kind = EdgeKind::along_yarn;
+  Edge() = default;
+  Edge(Index from, Index to, EdgeKind of) : a(from), b(to), kind(of) {}
+  Index a = 0;
+  Index b : 29 = 0;
+  EdgeKind kind : 3 = EdgeKind::along_yarn;
 };
 
 // Where the crowns of two layers touch: the area within which their gap is below h is area_per_height (h - gap).

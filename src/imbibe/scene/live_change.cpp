@@ -116,7 +116,7 @@ void expel(Textile& textile) {
   const WettingModel& model = *textile.model;
   for (std::size_t s = 0; s < model.segments; ++s) {
     const YarnWetting& yarn = model.yarns[model.segment_type[s]];
-    const Real most = yarn.swelling_regain * model.dry_mass[s];
+    const Real most = yarn.swelling_regain * model.dry_mass(s);
     Real& sorbed = textile.contents.sorbed_kg[s];
     if (sorbed > most) textile.exchange.waiting_kg[s] += sorbed - most, sorbed = most;
     if (!yarn.wets) textile.exchange.waiting_kg[s] += textile.contents.liquid_kg[s], textile.contents.liquid_kg[s] = 0;

@@ -53,12 +53,12 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
     const Real s = saturations[node];
     m.max_saturation = std::max(m.max_saturation, s);
     if (node < model.segments) {
-      m.yarn_volume += model.yarn_volume[node];
-      yarn_sum += s * model.yarn_volume[node];
+      m.yarn_volume += model.yarn_volume(node);
+      yarn_sum += s * model.yarn_volume(node);
       m.max_regain = std::max(m.max_regain, node_regain(model, textile.contents, node));
     } else {
-      pore_volume += model.volume[node];
-      pore_sum += s * model.volume[node];
+      pore_volume += model.volume(node);
+      pore_sum += s * model.volume(node);
     }
     if (!(s > params.wet_saturation)) continue;
     along_warp.include(network.node_centre(node).y);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "imbibe/core/portable.h"
@@ -33,13 +34,18 @@ std::string entry_sentence(const Textile& textile, std::size_t type) {
 
 std::string pore_sentence(const WettingModel& model) {
   if (model.pores == 0 || !model.params.pores) return "Pores between yarns take no part.";
-  const auto wetting = static_cast<std::size_t>(std::count(model.pore_wets.begin(), model.pore_wets.end(), 1));
-  if (wetting > 0)
-    return fmt::format("Pores between yarns fill with up to {:.0f} Pa of suction and hold until {:.0f} Pa.",
-                       *std::max_element(model.pore_entry.begin(), model.pore_entry.end()),
-                       *std::min_element(model.pore_open.begin(), model.pore_open.end()));
-  return fmt::format("Pores between yarns stay shut: liquid must press with {:.0f} Pa to break through.",
-                     *std::min_element(model.pore_breakthrough.begin(), model.pore_breakthrough.end()));
+  Real suction = 0, open = std::numeric_limits<Real>::infinity(), breakthrough = open;
+  bool wets = false;
+  for (std::size_t i = 0; i < model.pores; ++i) {
+    const NodeKind& pore = model.pore(i);
+    wets = wets || pore.wets;
+    suction = std::max(suction, pore.entry);
+    open = std::min(open, pore.open);
+    breakthrough = std::min(breakthrough, pore.breakthrough);
+  }
+  if (wets)
+    return fmt::format("Pores between yarns fill with up to {:.0f} Pa of suction and hold until {:.0f} Pa.", suction, open);
+  return fmt::format("Pores between yarns stay shut: liquid must press with {:.0f} Pa to break through.", breakthrough);
 }
 
 std::string layer_sentence(const Textile& textile) {
@@ -73,7 +79,7 @@ std::vector<std::string> explain_uptake(const World& world) {
     const Real force = textile.exchange.normal_force;
     Real room = 0;
     for (std::size_t s = 0; s < textile.model->segments; ++s)
-      room += textile.model->liquid.density * textile.model->volume[s];
+      room += textile.model->liquid.density * textile.model->volume(s);
     sentences.push_back(fmt::format(
         "{}: {:.3g} mg between fibres (room for {:.3g}), {:.3g} mg in pores, {:.3g} mg in fibre substance (with the regain at the start); "
         "{} particles were taken whole, {} came back; the liquid pressed with {:.3g} mN at the end.",

@@ -21,7 +21,7 @@ struct Tube {
 };
 Tube tube_of(const World& world) {
   const WettingModel& m = *world.textiles[0].model;
-  return {m.pore_throat[0], m.thickness, m.volume[m.segments], world.liquid.kind};
+  return {m.pore_throat(0), m.thickness, m.volume(m.segments), world.liquid.kind};
 }
 Real height(const World& world) {
   const Textile& t = world.textiles[0];
@@ -119,7 +119,7 @@ CaseResult breakthrough(CaseRunner& runner) {
   CaseResult r;
   const std::vector<std::string> base{"textiles[0].contact_angle=110 deg", "duration=10 ms", "output.every=10 ms"};
   const World world = runner.world("upright_tube", base);
-  const Real wanted = world.textiles[0].model->pore_breakthrough[0];
+  const Real wanted = world.textiles[0].model->pore_breakthrough(0);
   const auto taken = [&](Real share) {
     auto o = base;
     o.push_back(set("textiles[0].reservoirs[0].pressure", share * wanted, "Pa"));

@@ -77,10 +77,10 @@ CaseResult stain(CaseRunner& runner) {
   for (std::size_t s = 0; s < m.nodes(); ++s) {
     const Real volume = t.contents.liquid_kg[s] / m.liquid.density;
     (s < m.segments ? yarn : pores) += volume;
-    if (s < m.segments && saturation(m, t.contents, s) > 0.005) held += volume, wet_volume += m.volume[s];
+    if (s < m.segments && saturation(m, t.contents, s) > 0.005) held += volume, wet_volume += m.volume(s);
   }
   Real capacity = 0;
-  for (std::size_t s = 0; s < m.segments; ++s) capacity += m.volume[s];
+  for (std::size_t s = 0; s < m.segments; ++s) capacity += m.volume(s);
   capacity /= m.area;
   MeasureParams measures;
   measures.wet_saturation = 0.005;

@@ -18,7 +18,7 @@ void randomise(World& w, std::uint64_t seed, Real most) {
   const WettingModel& m = *t.model;
   for (std::size_t i = 0; i < m.nodes(); ++i) {
     const Real u = uniform({.seed = seed, .id = i}), v = uniform({.seed = seed, .id = i}, 1);
-    t.contents.liquid_kg[i] = (u < 0.33 ? 0 : v * (1 + most * m.overfill[i])) * m.liquid.density * m.volume[i];
+    t.contents.liquid_kg[i] = (u < 0.33 ? 0 : v * (1 + most * m.overfill(i))) * m.liquid.density * m.volume(i);
   }
 }
 
@@ -55,7 +55,7 @@ CaseResult maximum_principle(CaseRunner& runner) {
       const auto extremes = [&] {
         Real low = 1e300, high = -1e300;
         for (std::size_t i = 0; i < m.nodes(); ++i) {
-          if (m.volume[i] <= 0) continue;
+          if (m.volume(i) <= 0) continue;
           const Real p = node_pressure(m, t.contents, i);
           low = std::min(low, p), high = std::max(high, p);
         }
@@ -86,22 +86,25 @@ std::vector<Real> dense_step(const WettingModel& m, const std::vector<Real>& sta
   const std::size_t n = m.segments;
   std::vector<Real> s = start;
   const auto psi = [&](std::size_t i, Real x) {
-    const Sloped p = pressure_at({m.entry[i], m.size_index[i], m.open[i], m.overfill[i]}, x);
-    const Sloped k = kirchhoff_potential(m.entry[i], m.size_index[i], p.value);
+    const Sloped p = pressure_at({m.entry(i), m.size_index(i), m.open(i), m.overfill(i)}, x);
+    const Sloped k = kirchhoff_potential(m.entry(i), m.size_index(i), p.value);
     return Sloped{k.value, k.slope * p.slope};
   };
   for (int newton = 0; newton < 400; ++newton) {
     std::vector<Real> a(n * n, 0), residual(n);
-    for (std::size_t i = 0; i < n; ++i) residual[i] = m.volume[i] * (s[i] - start[i]), a[i * n + i] = m.volume[i];
-    for (const WettingEdge& e : m.edges) {
-      const Sloped x = psi(e.a, s[e.a]), y = psi(e.b, s[e.b]);
-      const Real flow = dt * e.conductance * (x.value - y.value);
-      residual[e.a] += flow, residual[e.b] -= flow;
-      a[e.a * n + e.a] += dt * e.conductance * x.slope, a[e.a * n + e.b] -= dt * e.conductance * y.slope;
-      a[e.b * n + e.b] += dt * e.conductance * y.slope, a[e.b * n + e.a] -= dt * e.conductance * x.slope;
-    }
+    for (std::size_t i = 0; i < n; ++i) residual[i] = m.volume(i) * (s[i] - start[i]), a[i * n + i] = m.volume(i);
+    for (Index i = 0; i < n; ++i)
+      for (Index k = m.row_start[i]; k < m.row_start[i + 1]; ++k) {
+        const Index j = m.row_other[k];
+        if (j < i) continue;
+        const Sloped x = psi(i, s[i]), y = psi(j, s[j]);
+        const Real conductance = m.links[m.row_link[k]].conductance, flow = dt * conductance * (x.value - y.value);
+        residual[i] += flow, residual[j] -= flow;
+        a[i * n + i] += dt * conductance * x.slope, a[i * n + j] -= dt * conductance * y.slope;
+        a[j * n + j] += dt * conductance * y.slope, a[j * n + i] -= dt * conductance * x.slope;
+      }
     Real worst = 0;
-    for (std::size_t i = 0; i < n; ++i) worst = std::max(worst, std::abs(residual[i]) / m.volume[i]);
+    for (std::size_t i = 0; i < n; ++i) worst = std::max(worst, std::abs(residual[i]) / m.volume(i));
     if (worst < 1e-14) break;
     for (std::size_t c = 0; c < n; ++c) {  // diagonally dominant by columns: no pivots needed
       for (std::size_t row = c + 1; row < n; ++row) {
@@ -147,7 +150,7 @@ CaseResult dense(CaseRunner& runner) {
     std::vector<Real> start(m.segments);
     for (std::size_t i = 0; i < m.segments; ++i) {
       start[i] = std::max(0.01, saturation(m, t.contents, i));
-      t.contents.liquid_kg[i] = start[i] * m.liquid.density * m.volume[i];
+      t.contents.liquid_kg[i] = start[i] * m.liquid.density * m.volume(i);
     }
     const Real dt = std::pow(10.0, draw(6, -4, 0));
     const WettingReport report = step_wetting(m, t.contents, {}, {}, w.air, {}, dt);

@@ -13,7 +13,7 @@ namespace {
 Real mean_regain(const World& w) {
   const Textile& t = w.textiles[0];
   Real dry = 0;
-  for (const Real kg : t.model->dry_mass) dry += kg;
+  for (std::size_t s = 0; s < t.model->segments; ++s) dry += t.model->dry_mass(s);
   return total_sorbed_kg(*t.model, t.contents) / dry;
 }
 
@@ -199,7 +199,7 @@ CaseResult swelling(CaseRunner& runner) {
   const Textile& t = w.textiles[0];
   Real over = 0, waiting = 0;
   for (std::size_t i = 0; i < t.model->nodes(); ++i)
-    over = std::max(over, saturation(*t.model, t.contents, i) - 1 - t.model->overfill[i]);
+    over = std::max(over, saturation(*t.model, t.contents, i) - 1 - t.model->overfill(i));
   for (const Real kg : t.exchange.waiting_kg) waiting += kg;
   const MassBalance was = mass_balance(before), is = mass_balance(w);
   r.checks.push_back(at_most("full cotton cloth: balance of the water", is.error(), 1e-12, "", "masses move by edge flows only"));

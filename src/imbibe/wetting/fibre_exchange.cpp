@@ -47,7 +47,7 @@ void commit(const WettingModel& m, Contents& contents, std::size_t s, Real surfa
 
 bool sorbs_from_pores(const WettingModel& m, std::size_t s) {
   const YarnWetting& yarn = m.yarns[m.segment_type[s]];
-  return m.volume[s] <= 0 && yarn.void_share <= 0 && yarn.cos_advancing > 0 && m.params.pores;
+  return m.volume(s) <= 0 && yarn.void_share <= 0 && yarn.cos_advancing > 0 && m.params.pores;
 }
 
 // A fibre as thick as its yarn, wetted by the pores beside it. One after the other: neighbours share pores.
@@ -56,12 +56,12 @@ void sorb_from_pores(const WettingModel& m, Contents& contents, std::size_t s, R
   const auto pores = m.pores_of_segment(s);
   for (const Index pore : pores) {
     held += contents.liquid_kg[pore];
-    wet += wetted_fibres(contents.liquid_kg[pore] / (m.liquid.density * m.volume[pore]), m.params.wetted_at);
+    wet += wetted_fibres(contents.liquid_kg[pore] / (m.liquid.density * m.volume(pore)), m.params.wetted_at);
   }
   const YarnWetting& yarn = m.yarns[m.segment_type[s]];
   if (held <= 0 || node_regain(m, contents, s) >= yarn.swelling_regain) return;
   const Real share = wet / static_cast<Real>(pores.size());
-  const Real full = m.dry_mass[s] * (regain_after(m, contents, s, yarn.swelling_regain, dt) -
+  const Real full = m.dry_mass(s) * (regain_after(m, contents, s, yarn.swelling_regain, dt) -
                                      node_regain(m, contents, s));
   if (full <= 0) return;
   const Real kg = std::min(share * full, held);
@@ -78,8 +78,8 @@ void sorb_from_yarn(const WettingModel& m, Contents& contents, std::size_t s, Re
   const Real held = contents.liquid_kg[s];
   const YarnWetting& yarn = m.yarns[m.segment_type[s]];
   if (held <= 0 || node_regain(m, contents, s) >= yarn.swelling_regain) return;
-  const Real share = wetted_fibres(held / (m.liquid.density * m.volume[s]), m.params.wetted_at);
-  const Real full = m.dry_mass[s] * (regain_after(m, contents, s, yarn.swelling_regain, dt) -
+  const Real share = wetted_fibres(held / (m.liquid.density * m.volume(s)), m.params.wetted_at);
+  const Real full = m.dry_mass(s) * (regain_after(m, contents, s, yarn.swelling_regain, dt) -
                                      node_regain(m, contents, s));
   if (full <= 0) return;
   const Real kg = std::min(share * full, held);
@@ -91,15 +91,15 @@ void sorb_from_yarn(const WettingModel& m, Contents& contents, std::size_t s, Re
 Real vapour_from_fibres(const WettingModel& m, Contents& contents, std::size_t s, Real density, Real humidity,
                         const Air& air, Real dt) {
   const Fibre& fibre = m.fibres[m.segment_type[s]];
-  FibreVapour step{.dry_mass = m.dry_mass[s], .regain = node_regain(m, contents, s),
-                   .conductance = dt * m.vapour_area[s] * air.mass_transfer * density, .humidity = humidity,
+  FibreVapour step{.dry_mass = m.dry_mass(s), .regain = node_regain(m, contents, s),
+                   .conductance = dt * m.vapour_area(s) * air.mass_transfer * density, .humidity = humidity,
                    .hysteresis = m.params.hysteresis};
   step.rest = regain_after(m, contents, s, 0, dt);
   step.gain = regain_after(m, contents, s, 1, dt) - step.rest;
   const FibreVapourResult result = fibre_vapour(fibre, step);
   if (result.given_kg == 0) return 0;
   const Real given = std::min(result.given_kg, contents.sorbed_kg[s]);
-  const Real full = m.dry_mass[s] * (step.regain - step.rest - step.gain * result.surface_regain);
+  const Real full = m.dry_mass(s) * (step.regain - step.rest - step.gain * result.surface_regain);
   commit(m, contents, s, result.surface_regain, dt, full != 0 ? given / full : 0, -given);
   return given;
 }
@@ -118,7 +118,7 @@ Drying dry(Real held, Real rate, Real dt) {
 void sorb_liquid(const WettingModel& m, Contents& contents, Real dt) {
   if (m.params.sorption == SorptionModel::none || m.params.model == TransportModel::as_printed || dt <= 0) return;
   parallel_for(m.segments, [&](std::size_t s) {
-    if (m.volume[s] > 0) sorb_from_yarn(m, contents, s, dt);
+    if (m.volume(s) > 0) sorb_from_yarn(m, contents, s, dt);
   }, 1024);
   for (std::size_t s = 0; s < m.segments; ++s) {
     if (sorbs_from_pores(m, s)) sorb_from_pores(m, contents, s, dt);
@@ -133,7 +133,7 @@ Real exchange_vapour(const WettingModel& m, Contents& contents, const Air& air, 
   // Fibres without free water stand at the air's temperature.
   const Real density = saturated_vapour_density(air.temperature);
   const auto wet_share = [&](std::size_t s) {
-    return m.volume[s] > 0 ? wetted_fibres(contents.liquid_kg[s] / (m.liquid.density * m.volume[s]), free_water) : 0;
+    return m.volume(s) > 0 ? wetted_fibres(contents.liquid_kg[s] / (m.liquid.density * m.volume(s)), free_water) : 0;
   };
   const bool with_air = m.params.sorption == SorptionModel::linear || m.params.sorption == SorptionModel::shells;
   // A fibre in equilibrium with the air gives and takes nothing: most of a cloth that is dry.
@@ -155,7 +155,7 @@ Real exchange_vapour(const WettingModel& m, Contents& contents, const Air& air, 
       const auto around = m.segments_of_pore(i);
       for (const Index s : around) wet += wet_share(s);
       const Real bare = around.empty() ? 1 : 1 - wet / static_cast<Real>(around.size());
-      const Drying drying = dry(held, wet_rate * bare * m.vapour_area[m.segments + i], dt);
+      const Drying drying = dry(held, wet_rate * bare * m.vapour_area(m.segments + i), dt);
       held -= drying.kg;
       given += drying.kg;
     }
@@ -165,7 +165,7 @@ Real exchange_vapour(const WettingModel& m, Contents& contents, const Air& air, 
     Real given = 0;
     for (std::size_t s = begin; s < end; ++s) {
       Real& held = contents.liquid_kg[s];
-      const Drying drying = dry(held, wet_rate * m.vapour_area[s], dt);
+      const Drying drying = dry(held, wet_rate * m.vapour_area(s), dt);
       held = drying.kg < held ? held - drying.kg : 0;
       given += drying.kg;
       if (with_air && drying.time < dt && !rests(s)) {

@@ -1,7 +1,9 @@
 // Sparse linear systems on a graph, and the rules that keep Newton's method inside the physics.
 //
-// Solver: BiCGSTAB (van der Vorst 1992) with an incomplete factorisation without fill-in, ILU(0), of fixed blocks of
-// rows. The matrices are column-dominant M-matrices (backward Euler of conservative flows), for which ILU(0) exists.
+// Solver: BiCGSTAB (van der Vorst 1992) with an incomplete factorisation of fixed blocks of rows that changes the
+// diagonal only, M = (D + L) D^-1 (D + U), L and U those of the matrix itself (DILU; Pommerell 1992): it keeps one number
+// a row where ILU(0) keeps the matrix over again. The matrices are column-dominant M-matrices (backward Euler of
+// conservative flows), for which both exist.
 // Stops at `tolerance` times the right-hand side, or at `floor` absolute: with a relative test alone a system at rest
 // (right-hand side zero) would iterate on rounding. Blocks are fixed, sums are added tile by tile: the same bits for
 // any number of threads.
@@ -11,7 +13,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,20 +20,21 @@
 
 namespace imbibe {
 
-// Compressed sparse rows; the diagonal is held apart. Whoever changes row_start or column sets a new `pattern`, so that
-// a solver need not look for the places of its factors again; 0: never the same as another.
+// Compressed sparse rows, their columns rising (equal ones allowed); the diagonal is held apart. The entry in row i is
+// scale[i] * value[k]: the slopes of a flow are single numbers that stand in two rows, so in single precision the columns
+// still add up, which rounded products would not (long steps live on that), and half as much is read.
 struct GraphMatrix {
   std::vector<Index> row_start;  // rows + 1
   std::vector<Index> column;
-  std::vector<Real> value;
+  std::vector<float> value;
+  std::vector<Real> scale;       // per row
   std::vector<Real> diagonal;
-  std::uint64_t pattern = 0;
   std::size_t rows() const { return diagonal.size(); }
 };
 
 void multiply(const GraphMatrix& matrix, std::span<const Real> x, std::span<Real> result);
 
-inline constexpr std::size_t factor_block = 4096;  // rows; entries between blocks stay out of the factors; < 65536
+inline constexpr std::size_t factor_block = 4096;  // rows; entries between blocks stay out of the factors
 
 struct LinearSolve {
   int iterations = 0;
@@ -40,21 +42,9 @@ struct LinearSolve {
   Real residual = 0;  // largest entry of |b - A x|
 };
 
-// ILU(0) of the blocks on the diagonal. Row i of the factors begins where the matrix's row begins; its entries below the
-// diagonal are [first, first + upper), those above [first + upper, first + last), columns ascending and counted from the
-// block's first row. `place` leads from an entry of the matrix to its own in the row (dropped: none). Double precision: in
-// long steps a row sums to almost nothing against its entries, and factors in single precision lose just that.
-struct BlockFactors {
-  static constexpr std::uint16_t dropped = 0xffff;
-  std::vector<Index> first;
-  std::vector<std::uint16_t> upper, last, column, place;
-  std::vector<Real> value, inverse_diagonal;
-  std::uint64_t pattern = 0;
-};
-
 // Scratch of the solver; reused between solves.
 struct LinearWorkspace {
-  BlockFactors factors;
+  std::vector<Real> inverse_pivot;
   std::vector<Real> r, r0, p, v, t, y;
 };
 

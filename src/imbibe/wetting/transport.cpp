@@ -22,7 +22,7 @@ using Work = TransportWorkspace;
 
 void evaluate_all(const TransportInput& input, Work& w) {
   evaluate_nodes(*input.model, w);
-  evaluate_edges(*input.model, w);
+  evaluate_links(*input.model, w);
   evaluate_supplies(input, w);
 }
 
@@ -34,15 +34,15 @@ Real assemble(const TransportInput& input, Work& w, bool with_matrix) {
   parallel_for(n, [&](std::size_t i) {
     Real flow = w.release[i], slope = w.release_slope[i];
     const Real scale = dt / w.volume[i];
-    for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
-      const auto& edge = w.edges[w.row_edge[k]];
-      const bool first = edge.a == i;
-      flow += first ? edge.flow : -edge.flow;
-      slope += first ? edge.slope_a : -edge.slope_b;
-      if (with_matrix) matrix.value[k] = scale * (first ? edge.slope_b : -edge.slope_a);
+    for (Index k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k) {
+      const auto& link = w.links[w.row_link[k]];
+      const bool first = w.active[i] < w.active[matrix.column[k]];
+      flow += first ? link.flow : -link.flow;
+      slope += first ? link.slope_a : -link.slope_b;
+      if (with_matrix) matrix.value[k] = first ? link.slope_b : -link.slope_a;
     }
     w.residual[i] = w.saturation[i] - w.old_saturation[i] + scale * flow;
-    if (with_matrix) matrix.diagonal[i] = 1 + scale * slope;
+    if (with_matrix) matrix.diagonal[i] = 1 + scale * slope, matrix.scale[i] = scale;
   }, transport_tile);
   for (const auto& supply : w.supplies) {
     const Real scale = dt / w.volume[supply.node];
@@ -63,13 +63,14 @@ Real assemble(const TransportInput& input, Work& w, bool with_matrix) {
 // neither a limit nor a landing there. Any growing Y leads to the same solution; a rough u costs iterations only.
 Sloped own_side(const WettingModel& m, const Work& w, std::size_t i, Real s) {
   const Index node = w.active[i];
+  const NodeKind& kind = m.kinds[w.kind[i]];
   if (m.params.model == TransportModel::as_printed) return {s, 1};
   if (node < m.segments && m.params.model == TransportModel::kunzel) {
     const Sloped phi = kunzel_potential(s);
     return {s + w.own_share[i] * phi.value, 1 + w.own_share[i] * phi.slope};
   }
-  const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, node, s, w.reached[i]) : filling_pressure(m, node, s);
-  const Real index = node < m.segments ? m.size_index[node] : m.params.yarn_size_index;  // a pore's links are its yarns'
+  const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, node, s, w.reached[i]) : filling_pressure(kind, s);
+  const Real index = node < m.segments ? kind.size_index : m.params.yarn_size_index;  // a pore's links are its yarns'
   const Sloped psi = YarnPotential{m.params.model, w.own_entry[i], index}(p.value);
   return {s + w.own_share[i] * psi.value, 1 + w.own_share[i] * psi.slope * p.slope};
 }
@@ -142,9 +143,16 @@ Index hardest_node(const Work& w) {
 
 // ---- masses --------------------------------------------------------------------------------------------------------
 
+// m3/s that leaves local node i over entry k of its row.
+Real flow_away(const Work& w, std::size_t i, Index k) {
+  const Real flow = w.links[w.row_link[k]].flow;
+  return w.active[i] < w.active[w.matrix.column[k]] ? flow : -flow;
+}
+
 // Cuts the outflows of nodes that the flows would leave below zero (by the tolerance of Newton's method).
-void limit_outflows(const TransportInput& input, Work& w) {
+void limit_outflows(const TransportInput& input, const Contents& contents, Work& w) {
   const Real dt = input.dt;
+  std::vector<Real>& scale = w.previous;
   auto &supply_in = w.residual, &supply_out = w.change;
   for (int pass = 0; pass < 50; ++pass) {
     std::fill(supply_in.begin(), supply_in.end(), 0);
@@ -156,23 +164,27 @@ void limit_outflows(const TransportInput& input, Work& w) {
       char cut_here = 0;
       for (std::size_t i = begin; i < end; ++i) {
         Real in = supply_in[i], out = w.release[i] + supply_out[i];
-        for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
-          const auto& edge = w.edges[w.row_edge[k]];
-          const Real away = edge.a == i ? edge.flow : -edge.flow;
+        for (Index k = w.matrix.row_start[i]; k < w.matrix.row_start[i + 1]; ++k) {
+          const Real away = flow_away(w, i, k);
           (away > 0 ? out : in) += std::abs(away);
         }
-        w.scale[i] = 1;
-        const Real held = w.old_content[i] + dt * in;
-        if (out > 0 && dt * out > held * (1 + 1e-15)) w.scale[i] = std::max<Real>(0, held / (dt * out)), cut_here = 1;
+        scale[i] = 1;
+        const Real held = contents.liquid_kg[w.active[i]] / input.model->liquid.density + dt * in;
+        if (out > 0 && dt * out > held * (1 + 1e-15)) scale[i] = std::max<Real>(0, held / (dt * out)), cut_here = 1;
       }
       return cut_here;
     }, transport_tile);
     if (!cut) return;
-    for (auto& edge : w.edges) edge.flow *= w.scale[edge.flow > 0 ? edge.a : edge.b];
+    parallel_for(w.active.size(), [&](std::size_t i) {
+      for (Index k = w.matrix.row_start[i]; k < w.matrix.row_start[i + 1]; ++k) {
+        const Index other = w.matrix.column[k];
+        if (other > i) w.links[w.row_link[k]].flow *= scale[flow_away(w, i, k) > 0 ? i : other];
+      }
+      w.release[i] *= scale[i];
+    }, transport_tile);
     for (auto& supply : w.supplies) {
-      if (supply.flow < 0) supply.flow *= w.scale[supply.node];
+      if (supply.flow < 0) supply.flow *= scale[supply.node];
     }
-    for (std::size_t i = 0; i < w.release.size(); ++i) w.release[i] *= w.scale[i];
   }
 }
 
@@ -182,10 +194,7 @@ void update_masses(const TransportInput& input, Contents& contents, Work& w, Tra
   const Real mass = m.liquid.density * input.dt;
   parallel_for(w.active.size(), [&](std::size_t i) {
     Real flow = 0;
-    for (Index k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
-      const auto& edge = w.edges[w.row_edge[k]];
-      flow += edge.a == i ? edge.flow : -edge.flow;
-    }
+    for (Index k = w.matrix.row_start[i]; k < w.matrix.row_start[i + 1]; ++k) flow += flow_away(w, i, k);
     contents.liquid_kg[w.active[i]] -= mass * flow;
   }, transport_tile);
   w.supply_kg.assign(input.supplies.size(), 0);
@@ -198,12 +207,12 @@ void update_masses(const TransportInput& input, Contents& contents, Work& w, Tra
   for (std::size_t i = 0; i < w.active.size(); ++i) {
     const Index node = w.active[i];
     Real& held = contents.liquid_kg[node];
-    const Real most = m.liquid.density * w.volume[i] * (1 + m.overfill[node]);
+    const Real most = m.liquid.density * w.volume[i] * (1 + m.overfill(node));
     const Real surplus = std::max(mass * w.release[i], held - most);
     if (surplus > 0) {
       const Real kg = std::min(surplus, held);
       held -= kg;
-      const Real excess = std::max<Real>(0, w.pressure[i] + w.face_head[i] - m.open[node]);
+      const Real excess = std::max<Real>(0, w.pressure[i] + w.face_head[i] - m.open(node));
       released.push_back({node, kg, excess, w.release[i]});
     }
     const Real after = held / (m.liquid.density * w.volume[i]);
@@ -237,7 +246,7 @@ TransportResult advance_transport(const TransportInput& input, Contents& content
     }
   } while (widen_active(*input.model, work));
   result.active_nodes = work.saturation.size();
-  limit_outflows(input, work);
+  limit_outflows(input, contents, work);
   update_masses(input, contents, work, result, released);
   result.converged = true;
   return result;

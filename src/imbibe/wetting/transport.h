@@ -46,13 +46,11 @@ struct TransportResult {
 
 // Node numbers of the solved set and everything that is computed on it. Reused between steps; never part of a state.
 struct TransportWorkspace {
-  struct LocalEdge {
-    Index edge = 0, a = 0, b = 0;       // global edge, local nodes
-    EdgeKind kind = EdgeKind::along_yarn;
-    Real head = 0;                      // Pa, rho g (z_b - z_a) downwards
-    Real factor = 0;                    // conductance now (share of a pore's walls that is wetted, D_ww)
-    Real entry = 0;                     // P_e of the curve that the link's potential follows; of pores: what opens the valve
-    Real flow = 0, slope_a = 0, slope_b = 0;  // m3/s, and per saturation of a and b
+  // Of a link, from its node a (the lower node number) to b: m3/s, and per saturation of a and b. Single precision is
+  // enough for the slopes: both rows of the matrix take them from here, so they still add up.
+  struct LinkFlow {
+    Real flow = 0;
+    float slope_a = 0, slope_b = 0;
   };
   struct LocalSupply {
     std::size_t supply = 0;
@@ -62,16 +60,19 @@ struct TransportWorkspace {
   };
   std::vector<Index> local_of;          // per node: its place in `active`, or no_index
   std::vector<Index> active;
-  std::vector<Real> volume, old_content, old_saturation, saturation, previous, pressure, pressure_slope, potential,
-      potential_slope, face_head, face_share, release, release_slope, residual, change, reached, scale, own_share, own_entry;
-  std::vector<LocalEdge> edges;
-  std::vector<Index> row_start, row_edge, row_other;
+  // Per solved node; `height` is rho g z downwards, Pa.
+  std::vector<Real> volume, old_saturation, old_pressure, saturation, previous, pressure, pressure_slope, potential,
+      potential_slope, height, face_head, face_share, release, release_slope, residual, change, reached, curve_entry, own_share,
+      own_entry;
+  std::vector<Index> kind;              // per node, as in the model
+  std::vector<LinkFlow> links;          // each once
+  std::vector<Index> link_kind;         // per link, as in the model
+  std::vector<Index> row_link;          // per entry of the matrix: into `links`
   std::vector<LocalSupply> supplies;
-  std::vector<Index> edge_place;        // per global edge
+  Real redistribution = 1;              // of Kuenzel's diffusivity in this step
   // What the rows were built for: they are kept while the solved set stays the same.
   std::vector<Index> rows_for;
   const WettingModel* rows_of = nullptr;
-  std::vector<Real> guess;              // per node, < 0: none
   std::vector<Real> supply_kg;          // per supply: taken in this step
   GraphMatrix matrix;
   LinearWorkspace linear;

@@ -6,74 +6,87 @@
 #include "imbibe/wetting/capillary.h"
 #include "imbibe/wetting/crossing.h"
 #include "imbibe/wetting/entry.h"
+#include "imbibe/wetting/face_back.h"
 
 namespace imbibe {
 namespace {
 
 using Work = TransportWorkspace;
 
-void printed_edge(const Work& w, Work::LocalEdge& local) {
-  const Index a = local.a, b = local.b;
-  Sloped at_b{w.potential[b], w.potential_slope[b]};
-  if (local.kind == EdgeKind::segment_pore) at_b = printed_potential(w.saturation[b]);
-  local.flow = local.factor * (w.potential[a] - at_b.value);
-  local.slope_a = local.factor * w.potential_slope[a];
-  local.slope_b = -local.factor * at_b.slope;
+using Flow = Work::LinkFlow;
+
+constexpr Real opened_pore = 0.5;  // saturation from which a rejecting pore no longer holds liquid off
+
+Flow flow_of(Real factor, const Sloped& at_a, const Sloped& at_b) {
+  return {factor * (at_a.value - at_b.value), static_cast<float>(factor * at_a.slope),
+          static_cast<float>(-factor * at_b.slope)};
 }
 
-void yarn_edge(const WettingModel& m, const Work& w, Work::LocalEdge& local) {
-  const Index a = local.a, b = local.b;
-  const Real head = local.head;
+// A potential over pressure, as one over saturation.
+Sloped over_saturation(Sloped potential, const Work& w, Index local) {
+  potential.slope *= w.pressure_slope[local];
+  return potential;
+}
+
+Flow printed_link(const WettingModel& m, const Work& w, const LinkKind& link, Index a, Index b) {
+  Sloped at_b{w.potential[b], w.potential_slope[b]};
+  if (link.kind == EdgeKind::segment_pore) at_b = printed_potential(w.saturation[b]);
+  return flow_of(link_factor(m, w, link, a, b), {w.potential[a], w.potential_slope[a]}, at_b);
+}
+
+Flow yarn_link(const WettingModel& m, const Work& w, const LinkKind& link, Index a, Index b, Real head) {
   const TransportModel law = m.params.model;
-  if (local.kind != EdgeKind::along_yarn && !m.edges[local.edge].same_material) {
-    const WettingEdge& edge = m.edges[local.edge];
-    const Index na = w.active[a], nb = w.active[b];
-    const Real share = local.factor / edge.conductance;
-    const CrossingFlow x = crossing_flow(YarnPotential{law, m.entry[na], m.size_index[na]},
-                                         YarnPotential{law, m.entry[nb], m.size_index[nb]}, local.factor,
-                                         share * edge.conductance_b, w.pressure[a], w.pressure[b]);
-    local.flow = x.flow;
-    local.slope_a = x.slope_a * w.pressure_slope[a];
-    local.slope_b = x.slope_b * w.pressure_slope[b];
-    return;
+  const Real factor = link_factor(m, w, link, a, b);
+  if (link.kind != EdgeKind::along_yarn && !link.same_material) {
+    const Real share = factor / link.conductance;
+    const NodeKind &at_a = m.kinds[w.kind[a]], &at_b = m.kinds[w.kind[b]];
+    const CrossingFlow x = crossing_flow(YarnPotential{law, at_a.entry, at_a.size_index},
+                                         YarnPotential{law, at_b.entry, at_b.size_index}, factor,
+                                         share * link.conductance_b, w.pressure[a], w.pressure[b]);
+    return {x.flow, static_cast<float>(x.slope_a * w.pressure_slope[a]),
+            static_cast<float>(x.slope_b * w.pressure_slope[b])};
   }
   // Both pressures are carried to the middle of the link, so that a hanging column comes to rest exactly. Kuenzel's
   // diffusivity knows no gravity.
   if (law == TransportModel::physical && (m.params.hysteresis || head != 0)) {
-    const Real index = m.size_index[w.active[a]];
-    const Sloped at_a = kirchhoff_potential(local.entry, index, w.pressure[a] + 0.5 * head);
-    const Sloped at_b = kirchhoff_potential(local.entry, index, w.pressure[b] - 0.5 * head);
-    local.flow = local.factor * (at_a.value - at_b.value);
-    local.slope_a = local.factor * at_a.slope * w.pressure_slope[a];
-    local.slope_b = -local.factor * at_b.slope * w.pressure_slope[b];
-  } else {
-    local.flow = local.factor * (w.potential[a] - w.potential[b]);
-    local.slope_a = local.factor * w.potential_slope[a];
-    local.slope_b = -local.factor * w.potential_slope[b];
+    const Real index = m.kinds[w.kind[a]].size_index, entry = link_entry(m, w, link, a, b);
+    return flow_of(factor, over_saturation(kirchhoff_potential(entry, index, w.pressure[a] + 0.5 * head), w, a),
+                   over_saturation(kirchhoff_potential(entry, index, w.pressure[b] - 0.5 * head), w, b));
   }
+  return flow_of(factor, {w.potential[a], w.potential_slope[a]}, {w.potential[b], w.potential_slope[b]});
 }
 
 // a is the segment. The pore's pressure is carried to the segment's height.
-void segment_pore_edge(const WettingModel& m, const Work& w, Work::LocalEdge& local) {
-  const Index a = local.a, b = local.b, node = w.active[a];
-  const YarnPotential psi{m.params.model, local.entry, m.size_index[node]};
-  const Sloped at_b = psi(w.pressure[b] - local.head);
-  Sloped at_a{w.potential[a], w.potential_slope[a]};
-  if (m.params.hysteresis && m.params.model == TransportModel::physical) {
-    at_a = psi(w.pressure[a]);
-    at_a.slope *= w.pressure_slope[a];
-  }
-  local.flow = local.factor * (at_a.value - at_b.value);
-  local.slope_a = local.factor * at_a.slope;
-  local.slope_b = -local.factor * at_b.slope * w.pressure_slope[b];
+Flow segment_pore_link(const WettingModel& m, const Work& w, const LinkKind& link, Index a, Index b, Real head) {
+  const YarnPotential psi{m.params.model, link_entry(m, w, link, a, b), m.kinds[w.kind[a]].size_index};
+  const bool shifted = m.params.hysteresis && m.params.model == TransportModel::physical;
+  return flow_of(link_factor(m, w, link, a, b),
+                 shifted ? over_saturation(psi(w.pressure[a]), w, a) : Sloped{w.potential[a], w.potential_slope[a]},
+                 over_saturation(psi(w.pressure[b] - head), w, b));
 }
 
-void pore_edge(Real open, const Work& w, Work::LocalEdge& local) {
-  const Sloped at_a = valve(w.pressure[local.a] + 0.5 * local.head, open);
-  const Sloped at_b = valve(w.pressure[local.b] - 0.5 * local.head, open);
-  local.flow = local.factor * (at_a.value - at_b.value);
-  local.slope_a = local.factor * at_a.slope * w.pressure_slope[local.a];
-  local.slope_b = -local.factor * at_b.slope * w.pressure_slope[local.b];
+// What the valve between two pores opens at: between layers a rejecting pore that is still empty must be broken through.
+Real valve_opening(const WettingModel& m, const Work& w, const LinkKind& link, Index a, Index b) {
+  if (!link.between_layers) return link.valve;
+  const auto opening = [&](Index local) {
+    const NodeKind& pore = m.kinds[w.kind[local]];
+    const bool shut = !pore.wets && w.old_saturation[local] < opened_pore;
+    return shut ? std::max(link.valve, pore.breakthrough) : link.valve;
+  };
+  return std::max(opening(a), opening(b));
+}
+
+Flow pore_link(Real open, const Work& w, const LinkKind& link, Index a, Index b, Real head) {
+  return flow_of(link.conductance, over_saturation(valve(w.pressure[a] + 0.5 * head, open), w, a),
+                 over_saturation(valve(w.pressure[b] - 0.5 * head, open), w, b));
+}
+
+Flow flow_over(const WettingModel& m, const Work& w, const LinkKind& link, Index a, Index b) {
+  if (m.params.model == TransportModel::as_printed) return printed_link(m, w, link, a, b);
+  const Real head = w.height[b] - w.height[a];
+  if (link.kind == EdgeKind::segment_pore) return segment_pore_link(m, w, link, a, b, head);
+  if (link.kind == EdgeKind::pore_pore) return pore_link(valve_opening(m, w, link, a, b), w, link, a, b, head);
+  return yarn_link(m, w, link, a, b, head);
 }
 
 // Flow from the face into a pore. A wetting one fills as a tube of its throat, the filled length taken at the middle of
@@ -82,15 +95,15 @@ Sloped pore_supply(const TransportInput& input, const Work& w, Index local, cons
   const WettingModel& m = *input.model;
   const std::size_t pore = w.active[local] - m.segments;
   const Real p = w.pressure[local], dp = w.pressure_slope[local];
-  if (!m.pore_wets[pore]) {
-    const Real conductance = m.release_conductance[w.active[local]];
-    if (supply.pressure <= m.pore_breakthrough[pore] && p <= supply.pressure) return {};
+  if (!m.pore_wets(pore)) {
+    const Real conductance = m.release_conductance(w.active[local]);
+    if (supply.pressure <= m.pore_breakthrough(pore) && p <= supply.pressure) return {};
     if (p < 0) return {conductance * supply.pressure, 0};
     return {conductance * (supply.pressure - p), -conductance * dp};
   }
-  const Real s = w.saturation[local], entry = m.entry[w.active[local]];
+  const Real s = w.saturation[local], entry = m.entry(w.active[local]);
   const Real filled = std::clamp<Real>(0.5 * (s + w.old_saturation[local]), 1e-6, 1);
-  const Real conductance = tube_conductance(m.pore_throat[pore], m.liquid.viscosity, filled * m.thickness);
+  const Real conductance = tube_conductance(m.pore_throat(pore), m.liquid.viscosity, filled * m.thickness);
   // The meniscus stands at s t; a pore fed from below lifts its column.
   const Real along = (supply.from_below ? 1 : -1) * input.across(supply.node) * m.liquid.density * m.thickness;
   const Real column = std::min<Real>(s, 1) * along;
@@ -100,7 +113,7 @@ Sloped pore_supply(const TransportInput& input, const Work& w, Index local, cons
   Sloped flow{conductance * drive, conductance * drive_slope};
   if (drive > 0 && filled > 1e-6 && filled < 1) flow.slope -= 0.5 * flow.value / filled;
   flow.slope = std::min<Real>(flow.slope, 0);
-  const Real most = m.pore_mouth[pore] * inertial_speed(drive, m.liquid.density);
+  const Real most = m.pore_mouth(pore) * inertial_speed(drive, m.liquid.density);
   if (flow.value > most) {
     flow.value = most;
     flow.slope = full && drive > 0 ? -0.5 * most / drive * dp : 0;
@@ -111,7 +124,7 @@ Sloped pore_supply(const TransportInput& input, const Work& w, Index local, cons
 Sloped supply_law(const TransportInput& input, const Work& w, Index local, const FaceSupply& supply) {
   const WettingModel& m = *input.model;
   const Index node = w.active[local];
-  const Real conductance = m.supply_conductance[node];
+  const Real conductance = m.supply_conductance(node);
   switch (m.params.model) {
     case TransportModel::as_printed: {
       const Real full = node < m.segments ? printed_potential(1).value : 1;
@@ -121,9 +134,9 @@ Sloped supply_law(const TransportInput& input, const Work& w, Index local, const
     case TransportModel::physical: break;
   }
   if (node >= m.segments) return pore_supply(input, w, local, supply);
-  const Sloped face = YarnPotential{m.params.model, m.entry[node], m.size_index[node]}(supply.pressure);
+  const Sloped face = YarnPotential{m.params.model, m.entry(node), m.size_index(node)}(supply.pressure);
   if (m.params.hysteresis && m.params.model == TransportModel::physical) {
-    const Sloped inside = kirchhoff_potential(m.entry[node], m.size_index[node], w.pressure[local]);
+    const Sloped inside = kirchhoff_potential(m.entry(node), m.size_index(node), w.pressure[local]);
     return {conductance * (face.value - inside.value), -conductance * inside.slope * w.pressure_slope[local]};
   }
   return {conductance * (face.value - w.potential[local]), -conductance * w.potential_slope[local]};
@@ -131,41 +144,64 @@ Sloped supply_law(const TransportInput& input, const Work& w, Index local, const
 
 }  // namespace
 
+Real link_factor(const WettingModel& m, const TransportWorkspace& w, const LinkKind& link, Index a, Index b) {
+  if (link.kind == EdgeKind::pore_pore || m.params.model == TransportModel::as_printed) return link.conductance;
+  Real factor = link.conductance;
+  if (link.kind == EdgeKind::face_back) {
+    const CrownBridge& bridge = m.bridges[link.contact];
+    const Real height =
+        bridged_height(m.liquid.surface_tension, bridge.cosines, std::max(w.old_pressure[a], w.old_pressure[b]));
+    factor *= bridged_area(height, bridge.gap, bridge.area_per_height, bridge.most) / bridge.most;
+  }
+  factor *= w.redistribution;
+  if (link.kind == EdgeKind::segment_pore) factor *= std::sqrt(std::clamp<Real>(w.old_saturation[b], driest_wall, 1));
+  return factor;
+}
+
+Real link_entry(const WettingModel& m, const TransportWorkspace& w, const LinkKind& link, Index a, Index b) {
+  const bool upstream_is_a = link.kind == EdgeKind::segment_pore || w.old_pressure[a] >= w.old_pressure[b];
+  const Index upstream = upstream_is_a ? a : b;
+  return m.params.hysteresis ? w.curve_entry[upstream] : m.kinds[w.kind[upstream]].entry;
+}
+
 void evaluate_nodes(const WettingModel& m, TransportWorkspace& w) {
   const TransportModel law = m.params.model;
   parallel_for(w.active.size(), [&](std::size_t i) {
     const Index node = w.active[i];
     const Real s = w.saturation[i];
+    const NodeKind& kind = m.kinds[w.kind[i]];
     if (law == TransportModel::as_printed) {
       const Sloped phi = node < m.segments ? printed_potential(s) : Sloped{s, 1};
       w.potential[i] = phi.value, w.potential_slope[i] = phi.slope;
       return;
     }
-    const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, node, s, w.reached[i]) : filling_pressure(m, node, s);
+    const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, node, s, w.reached[i]) : filling_pressure(kind, s);
     w.pressure[i] = p.value, w.pressure_slope[i] = p.slope;
     if (node < m.segments) {
       if (law == TransportModel::kunzel) {
         const Sloped phi = kunzel_potential(s);
         w.potential[i] = phi.value, w.potential_slope[i] = phi.slope;
       } else {
-        const Sloped psi = kirchhoff_potential(m.entry[node], m.size_index[node], p.value);
+        const Sloped psi = kirchhoff_potential(kind.entry, kind.size_index, p.value);
         w.potential[i] = psi.value, w.potential_slope[i] = psi.slope * p.slope;
       }
     }
-    const Sloped open = valve(p.value + w.face_head[i], m.open[node]);
-    const Real conductance = w.face_share[i] * m.release_conductance[node];
+    const Sloped open = valve(p.value + w.face_head[i], kind.open);
+    const Real conductance = w.face_share[i] * kind.release_conductance;
     w.release[i] = conductance * open.value;
     w.release_slope[i] = conductance * open.slope * p.slope;
   }, transport_tile);
 }
 
-void evaluate_edges(const WettingModel& m, TransportWorkspace& w) {
-  parallel_for(w.edges.size(), [&](std::size_t e) {
-    auto& local = w.edges[e];
-    if (m.params.model == TransportModel::as_printed) return printed_edge(w, local);
-    if (local.kind == EdgeKind::segment_pore) return segment_pore_edge(m, w, local);
-    if (local.kind == EdgeKind::pore_pore) return pore_edge(local.entry, w, local);
-    yarn_edge(m, w, local);
+void evaluate_links(const WettingModel& m, TransportWorkspace& w) {
+  parallel_for(w.active.size(), [&](std::size_t i) {
+    for (Index k = w.matrix.row_start[i + 1]; k-- > w.matrix.row_start[i] && w.matrix.column[k] > i;) {
+      const auto here = static_cast<Index>(i), other = w.matrix.column[k];
+      const Index number = w.row_link[k];
+      const LinkKind& link = m.links[w.link_kind[number]];
+      const bool first = w.active[here] < w.active[other];
+      w.links[number] = flow_over(m, w, link, first ? here : other, first ? other : here);
+    }
   }, transport_tile);
 }
 

@@ -26,8 +26,12 @@ struct YarnPotential {
 
 // Pressures, potentials and releases of the nodes at work.saturation.
 void evaluate_nodes(const WettingModel& model, TransportWorkspace& work);
+// Of a link between local nodes a and b in this step: its conductance now (the share of a pore's walls that is wetted,
+// D_ww, a bridge's area), and P_e of the curve that its potential follows.
+Real link_factor(const WettingModel& model, const TransportWorkspace& work, const LinkKind& link, Index a, Index b);
+Real link_entry(const WettingModel& model, const TransportWorkspace& work, const LinkKind& link, Index a, Index b);
 // Flows of the links; needs the nodes.
-void evaluate_edges(const WettingModel& model, TransportWorkspace& work);
+void evaluate_links(const WettingModel& model, TransportWorkspace& work);
 // Flows from the faces, no more than is available; needs the nodes.
 void evaluate_supplies(const TransportInput& input, TransportWorkspace& work);
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <map>
 #include <tuple>
 #include <fmt/format.h>
 
@@ -76,24 +79,32 @@ PoreSurroundings surroundings(const YarnNetwork& network, const WettingLiquid& l
   const std::size_t pores = network.pores(), segments = network.segments();
   PoreSurroundings result;
   std::vector<std::array<Real, 6>> sums(pores);
+  struct Cosines {
+    Real advancing = 0, receding = 0;
+  };
+  std::vector<Cosines> of_type;
+  for (const YarnType& type : network.yarn_types)
+    of_type.push_back({portable::cos(advancing_angle(type.fibre, liquid)), portable::cos(receding_angle(type.fibre, liquid))});
+  // A pore without yarns around it takes the first ones'.
+  const Fibre first = network.yarn_types.empty() ? Fibre{} : network.yarn_types[0].fibre;
+  const Cosines fallback{portable::cos(advancing_angle(first, liquid)), portable::cos(receding_angle(first, liquid))};
   for (const Edge& edge : network.edges) {
     if (edge.kind != EdgeKind::segment_pore) continue;
     const std::size_t segment = std::min(edge.a, edge.b), pore = std::max(edge.a, edge.b) - segments;
-    const YarnType& type = network.type_of_segment(segment);
+    const Index type = network.yarn_type[network.segment_yarn[segment]];
     auto& sum = sums[pore];
     const std::size_t family = network.family_of_segment(segment) == Family::warp ? 0 : 2;
-    sum[family] += type.radius, sum[family + 1] += 1;
-    sum[4] += portable::cos(advancing_angle(type.fibre, liquid));
-    sum[5] += portable::cos(receding_angle(type.fibre, liquid));
+    sum[family] += network.yarn_types[type].radius, sum[family + 1] += 1;
+    sum[4] += of_type[type].advancing;
+    sum[5] += of_type[type].receding;
   }
   for (std::size_t i = 0; i < pores; ++i) {
     const auto& sum = sums[i];
     const Real count = sum[1] + sum[3];
-    const Fibre fallback = network.yarn_types.empty() ? Fibre{} : network.yarn_types[0].fibre;
     result.warp_radius.push_back(sum[1] > 0 ? sum[0] / sum[1] : 0);
     result.weft_radius.push_back(sum[3] > 0 ? sum[2] / sum[3] : 0);
-    result.cosine.push_back(count > 0 ? sum[4] / count : portable::cos(advancing_angle(fallback, liquid)));
-    result.cosine_receding.push_back(count > 0 ? sum[5] / count : portable::cos(receding_angle(fallback, liquid)));
+    result.cosine.push_back(count > 0 ? sum[4] / count : fallback.advancing);
+    result.cosine_receding.push_back(count > 0 ? sum[5] / count : fallback.receding);
   }
   return result;
 }
@@ -135,100 +146,171 @@ void check_input(const YarnNetwork& network, const WettingLiquid& liquid) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-int free_faces(const WettingModel& m, std::size_t node) {
-  return (m.faces[node] & upper_face ? 1 : 0) + (m.faces[node] & lower_face ? 1 : 0);
+// To 30 bits: two values that differ by rounding become one, and so do their kinds.
+Real rounded(Real value) {
+  constexpr std::uint64_t half = std::uint64_t{1} << 21;
+  const auto bits = std::bit_cast<std::uint64_t>(value) + half;
+  return std::isfinite(value) ? std::bit_cast<Real>(bits & ~(2 * half - 1)) : value;
 }
 
-void add_segments(WettingModel& m, const YarnNetwork& network) {
-  std::vector<Real> weight(static_cast<std::size_t>(network.layers), 0);
-  for (std::size_t s = 0; s < m.segments; ++s) {
-    const YarnType& type = network.type_of_segment(s);
-    const Index index = network.yarn_type[network.segment_yarn[s]];
-    const YarnWetting& yarn = m.yarns[index];
-    const Real length = network.segment_length[s], r = type.radius;
-    const Real volume = pi * r * r * length;
-    m.segment_type.push_back(index);
-    m.yarn_volume.push_back(volume);
-    const Real solid = type.monofilament ? 1 : type.packing;
-    m.dry_mass.push_back(type.linear_density > 0 ? type.linear_density * length : type.fibre.density * solid * volume);
-    const bool printed = m.params.model == TransportModel::as_printed;
-    m.volume.push_back(!yarn.wets ? 0 : volume * (printed ? yarn.printed_share : yarn.void_share));
-    m.entry.push_back(yarn.entry);
-    m.entry_receding.push_back(yarn.entry_receding);
-    m.open.push_back(m.liquid.surface_tension / r);
-    m.overfill.push_back(m.params.yarn_overfill);
-    m.size_index.push_back(m.params.yarn_size_index);
-    m.centre.push_back(network.segment_centre[s]);
-    // From the face to the yarn's middle: half its perimeter over half its radius.
-    const Real patch = 0.5 * pi * r * length / (0.5 * r);
-    const Real anisotropy = yarn.axial > 0 ? yarn.transverse / yarn.axial : 0;
-    const Real to_face = yarn.wets ? yarn.transverse * patch / m.liquid.viscosity : 0;
-    m.release_conductance.push_back(free_faces(m, s) > 0 ? to_face : 0);
-    switch (m.params.model) {
-      case TransportModel::physical: m.supply_conductance.push_back(to_face); break;
-      case TransportModel::kunzel:
-        m.supply_conductance.push_back(yarn.wets ? yarn.void_share * yarn.diffusivity * anisotropy * patch : 0);
-        break;
-      case TransportModel::as_printed:
-        m.supply_conductance.push_back(yarn.printed_share * yarn.diffusivity * patch);
-        break;
+// Each value once, numbered in the order in which they come.
+template <class T>
+class Numbered {
+ public:
+  explicit Numbered(std::vector<T>& values) : values_(values) {}
+  Index operator()(const T& value) {
+    if (!values_.empty() && values_[last_] == value) return last_;
+    const auto [at, is_new] = number_.try_emplace(value, static_cast<Index>(values_.size()));
+    if (is_new) values_.push_back(value);
+    return last_ = at->second;
+  }
+
+ private:
+  struct Before {
+    bool operator()(const T& a, const T& b) const { return (a <=> b) < 0; }
+  };
+  std::vector<T>& values_;
+  std::map<T, Index, Before> number_;
+  Index last_ = 0;
+};
+
+std::uint8_t faces_of(const YarnNetwork& network, std::size_t node) {
+  return static_cast<std::uint8_t>((network.on_face(node, true) ? upper_face : 0) |
+                                   (network.on_face(node, false) ? lower_face : 0));
+}
+int count_faces(std::uint8_t faces) { return (faces & upper_face ? 1 : 0) + (faces & lower_face ? 1 : 0); }
+
+// The area of the sheet that a segment stands for, before those of its layer are made to add up.
+Real plan_area(const YarnNetwork& network, std::size_t s) {
+  return network.segment_length[s] * (network.family_of_segment(s) == Family::warp ? network.pitch_x : network.pitch_y);
+}
+
+NodeKind segment_kind(const WettingModel& m, const YarnNetwork& network, std::size_t s) {
+  const YarnType& type = network.type_of_segment(s);
+  const YarnWetting& yarn = m.yarns[m.segment_type[s]];
+  const Real length = network.segment_length[s], r = type.radius;
+  const bool printed = m.params.model == TransportModel::as_printed;
+  NodeKind kind{.type = m.segment_type[s], .faces = faces_of(network, s)};
+  kind.yarn_volume = pi * r * r * length;
+  const Real solid = type.monofilament ? 1 : type.packing;
+  kind.dry_mass = type.linear_density > 0 ? type.linear_density * length : type.fibre.density * solid * kind.yarn_volume;
+  kind.volume = !yarn.wets ? 0 : kind.yarn_volume * (printed ? yarn.printed_share : yarn.void_share);
+  kind.entry = yarn.entry;
+  kind.entry_receding = yarn.entry_receding;
+  kind.open = m.liquid.surface_tension / r;
+  kind.overfill = m.params.yarn_overfill;
+  kind.size_index = m.params.yarn_size_index;
+  // From the face to the yarn's middle: half its perimeter over half its radius.
+  const Real patch = 0.5 * pi * r * length / (0.5 * r);
+  const Real anisotropy = yarn.axial > 0 ? yarn.transverse / yarn.axial : 0;
+  const Real to_face = yarn.wets ? yarn.transverse * patch / m.liquid.viscosity : 0;
+  kind.release_conductance = kind.faces != 0 ? to_face : 0;
+  switch (m.params.model) {
+    case TransportModel::physical: kind.supply_conductance = to_face; break;
+    case TransportModel::kunzel:
+      kind.supply_conductance = yarn.wets ? yarn.void_share * yarn.diffusivity * anisotropy * patch : 0;
+      break;
+    case TransportModel::as_printed: kind.supply_conductance = yarn.printed_share * yarn.diffusivity * patch; break;
+  }
+  return kind;
+}
+
+// The pressures of a pore, found by trying many menisci: once for each opening and angle.
+class PorePressures {
+ public:
+  explicit PorePressures(Real tension) : tension_(tension) {}
+  struct Pair {
+    Real open = 0, breakthrough = 0;
+  };
+  Pair operator()(const PoreOpening& opening, Real cosine) {
+    const std::array<Real, 5> key{rounded(opening.gap_x), rounded(opening.gap_y), rounded(opening.radius_x),
+                                  rounded(opening.radius_y), rounded(cosine)};
+    const auto [at, is_new] = known_.try_emplace(key);
+    if (is_new) {
+      const PoreOpening alike{.gap_x = key[0], .gap_y = key[1], .radius_x = key[2], .radius_y = key[3]};
+      const Real angle = portable::acos(std::clamp<Real>(key[4], -1, 1));
+      at->second = {opening_pressure(tension_, angle, alike), breakthrough_pressure(tension_, angle, alike)};
     }
-    const bool warp = network.family_of_segment(s) == Family::warp;
-    m.vapour_area.push_back(length * (warp ? network.pitch_x : network.pitch_y));
-    weight[static_cast<std::size_t>(network.layer_of(s))] += m.vapour_area.back();
+    return at->second;
   }
-  // The faces that see the air, shared by the segments of their layer: a boundary layer of millimetres does not see the
-  // gaps. Vapour through a covered face, past the other layer, is left out.
-  for (std::size_t s = 0; s < m.segments; ++s) {
-    const Real sum = weight[static_cast<std::size_t>(network.layer_of(s))];
-    m.vapour_area[s] *= sum > 0 ? free_faces(m, s) * m.area / sum : 0;
-    if (m.volume[s] > 0) m.greatest_vapour_area = std::max(m.greatest_vapour_area, m.vapour_area[s] / m.volume[s]);
-  }
-}
 
-void add_pores(WettingModel& m, const YarnNetwork& network, const PoreSurroundings& around) {
+ private:
+  Real tension_;
+  std::map<std::array<Real, 5>, Pair> known_;
+};
+
+NodeKind pore_kind(const WettingModel& m, const YarnNetwork& network, const PoreSurroundings& around,
+                   PorePressures& pressures, std::size_t i) {
   const Real tension = m.liquid.surface_tension;
-  for (std::size_t i = 0; i < m.pores; ++i) {
-    const Real cosine = std::clamp<Real>(around.cosine[i], -1, 1), angle = portable::acos(cosine);
-    const PoreOpening opening{.gap_x = network.pore_opening_x[i], .gap_y = network.pore_opening_y[i],
-                              .radius_x = around.warp_radius[i], .radius_y = around.weft_radius[i]};
-    const Real throat = network.pore_throat[i];
-    m.pore_throat.push_back(throat);
-    m.pore_wets.push_back(cosine > neutral_cosine);
-    const Real entry = std::max<Real>(0, throat_suction(tension, cosine, throat));
-    m.pore_entry.push_back(entry);
-    m.pore_entry_receding.push_back(std::max(entry, throat_suction(tension, around.cosine_receding[i], throat)));
-    m.pore_open.push_back(opening_pressure(tension, angle, opening));
-    m.pore_breakthrough.push_back(breakthrough_pressure(tension, angle, opening));
-    m.pore_mouth.push_back(opening.gap_x * opening.gap_y);
-    m.volume.push_back(m.params.pores ? network.pore_volume[i] : 0);
-    m.entry.push_back(entry);
-    m.entry_receding.push_back(m.pore_entry_receding.back());
-    m.open.push_back(m.pore_open.back());
-    m.overfill.push_back(m.params.pore_overfill);
-    m.size_index.push_back(m.params.pore_size_index);
-    m.centre.push_back(network.pore_centre[i]);
-    // Half the way from face to face on average.
-    const int faces = free_faces(m, m.segments + i);
-    m.release_conductance.push_back(faces > 0 ? tube_conductance(throat, m.liquid.viscosity, 0.5 * m.thickness) : 0);
-    const Real printed = printed_pore_diffusivity(water_self_diffusion, throat, m.params.printed_pore_velocity) *
-                         m.pore_mouth.back() / (0.5 * m.thickness);
-    m.supply_conductance.push_back(m.params.model == TransportModel::as_printed ? printed : 0);
-    m.vapour_area.push_back(faces * network.pore_area[i]);
-  }
+  const Real cosine = std::clamp<Real>(around.cosine[i], -1, 1);
+  const PoreOpening opening{.gap_x = network.pore_opening_x[i], .gap_y = network.pore_opening_y[i],
+                            .radius_x = around.warp_radius[i], .radius_y = around.weft_radius[i]};
+  const PorePressures::Pair pressure = pressures(opening, cosine);
+  NodeKind kind{.faces = faces_of(network, m.segments + i), .wets = cosine > neutral_cosine};
+  kind.throat = network.pore_throat[i];
+  kind.entry = std::max<Real>(0, throat_suction(tension, cosine, kind.throat));
+  kind.entry_receding = std::max(kind.entry, throat_suction(tension, around.cosine_receding[i], kind.throat));
+  kind.open = pressure.open;
+  kind.breakthrough = pressure.breakthrough;
+  kind.mouth = opening.gap_x * opening.gap_y;
+  kind.volume = m.params.pores ? network.pore_volume[i] : 0;
+  kind.overfill = m.params.pore_overfill;
+  kind.size_index = m.params.pore_size_index;
+  // Half the way from face to face on average.
+  const int faces = count_faces(kind.faces);
+  kind.release_conductance = faces > 0 ? tube_conductance(kind.throat, m.liquid.viscosity, 0.5 * m.thickness) : 0;
+  const Real printed = printed_pore_diffusivity(water_self_diffusion, kind.throat, m.params.printed_pore_velocity) *
+                       kind.mouth / (0.5 * m.thickness);
+  kind.supply_conductance = m.params.model == TransportModel::as_printed ? printed : 0;
+  kind.vapour_area = faces * network.pore_area[i];
+  return kind;
 }
 
-// A bulging yarn gives off where its pores do.
-void set_yarn_opening(WettingModel& m, const YarnNetwork& network) {
-  std::vector<Real> sum(m.segments, 0), count(m.segments, 0);
+// A bulging yarn gives off where its pores do: the mean of their opening pressures; 0 where it has none.
+std::vector<Real> openings_beside(const WettingModel& m, const YarnNetwork& network) {
+  std::vector<Real> sum(m.segments, 0);
+  std::vector<std::uint8_t> count(m.segments, 0);
   for (const Edge& edge : network.edges) {
     if (edge.kind != EdgeKind::segment_pore) continue;
     const Index segment = std::min(edge.a, edge.b), pore = std::max(edge.a, edge.b);
-    sum[segment] += m.open[pore];
-    count[segment] += 1;
+    sum[segment] += m.open(pore);
+    ++count[segment];
   }
+  for (std::size_t s = 0; s < m.segments; ++s) sum[s] = count[s] > 0 ? sum[s] / count[s] : 0;
+  return sum;
+}
+
+void add_nodes(WettingModel& m, const YarnNetwork& network) {
+  const auto round = [](NodeKind kind) {
+    for (Real* value : {&kind.dry_mass, &kind.yarn_volume, &kind.volume, &kind.entry, &kind.entry_receding, &kind.open,
+                        &kind.supply_conductance, &kind.release_conductance, &kind.vapour_area, &kind.throat,
+                        &kind.breakthrough, &kind.mouth})
+      *value = rounded(*value);
+    return kind;
+  };
+  Numbered<NodeKind> number(m.kinds);
+  m.kind.resize(m.nodes());
+  m.centre.reserve(m.nodes());
+  for (std::size_t i = 0; i < m.nodes(); ++i) m.centre.push_back(network.node_centre(i));
+  const PoreSurroundings around = surroundings(network, m.liquid);
+  PorePressures pressures(m.liquid.surface_tension);
+  for (std::size_t i = 0; i < m.pores; ++i)
+    m.kind[m.segments + i] = number(round(pore_kind(m, network, around, pressures, i)));
+  std::vector<Real> area(static_cast<std::size_t>(network.layers), 0);
+  for (std::size_t s = 0; s < m.segments; ++s) area[static_cast<std::size_t>(network.layer_of(s))] += plan_area(network, s);
+  const std::vector<Real> opening = m.params.pores ? openings_beside(m, network) : std::vector<Real>(m.segments, 0);
   for (std::size_t s = 0; s < m.segments; ++s) {
-    if (count[s] > 0 && m.params.pores) m.open[s] = sum[s] / count[s];
+    NodeKind kind = segment_kind(m, network, s);
+    if (opening[s] > 0) kind.open = opening[s];
+    // The faces that see the air, shared by the segments of their layer: a boundary layer of millimetres does not see the
+    // gaps. Vapour through a covered face, past the other layer, is left out.
+    const Real sum = area[static_cast<std::size_t>(network.layer_of(s))];
+    kind.vapour_area = sum > 0 ? plan_area(network, s) * count_faces(kind.faces) * m.area / sum : 0;
+    m.kind[s] = number(round(kind));
+  }
+  for (const NodeKind& kind : m.kinds) {
+    if (kind.type == no_index || kind.volume <= 0) continue;
+    m.greatest_vapour_area = std::max(m.greatest_vapour_area, kind.vapour_area / kind.volume);
   }
 }
 
@@ -255,62 +337,62 @@ Real transverse_factor(const WettingModel& m, const YarnWetting& yarn) {
 }
 
 // Facing pores of two layers: both throats, each over half its layer.
-void set_facing_pores(const WettingModel& m, std::size_t a, std::size_t b, WettingEdge& edge) {
+void set_facing_pores(const WettingModel& m, std::size_t a, std::size_t b, LinkKind& link) {
   const auto half = [&](std::size_t pore) {
     if (m.params.model != TransportModel::as_printed)
-      return tube_conductance(m.pore_throat[pore], m.liquid.viscosity, 0.5 * m.thickness);
-    return printed_pore_diffusivity(water_self_diffusion, m.pore_throat[pore], m.params.printed_pore_velocity) *
-           m.pore_mouth[pore] / (0.5 * m.thickness);
+      return tube_conductance(m.pore_throat(pore), m.liquid.viscosity, 0.5 * m.thickness);
+    return printed_pore_diffusivity(water_self_diffusion, m.pore_throat(pore), m.params.printed_pore_velocity) *
+           m.pore_mouth(pore) / (0.5 * m.thickness);
   };
-  edge.valve = std::max(m.pore_open[a], m.pore_open[b]);
-  edge.conductance = 1 / (1 / half(a) + 1 / half(b));
+  link.valve = std::max(m.pore_open(a), m.pore_open(b));
+  link.conductance = 1 / (1 / half(a) + 1 / half(b));
 }
 
 // Sets the conductance; false where no liquid can pass.
-bool set_conductance(const WettingModel& m, const YarnNetwork& network, WettingEdge& edge) {
+bool set_conductance(const WettingModel& m, const YarnNetwork& network, const Edge& edge, LinkKind& link) {
   const auto yarn_of = [&](Index s) -> const YarnWetting& { return m.yarns[m.segment_type[s]]; };
   const auto along = [&](Index s, Real length) {
     const Real r = network.type_of_segment(s).radius;
     return axial_factor(m, yarn_of(s)) * pi * r * r / length;
   };
-  switch (edge.kind) {
+  switch (link.kind) {
     case EdgeKind::along_yarn:
-      edge.conductance = along(edge.a, 0.5 * (network.segment_length[edge.a] + network.segment_length[edge.b]));
+      link.conductance = along(edge.a, 0.5 * (network.segment_length[edge.a] + network.segment_length[edge.b]));
       break;
     case EdgeKind::crossing:
     case EdgeKind::face_back: {
-      const bool layers = edge.kind == EdgeKind::face_back;
+      const bool layers = link.kind == EdgeKind::face_back;
       const Real factor = layers ? 1 : m.params.crossing_factor;
-      const auto link = [&](Index s) {
+      const auto half = [&](Index s) {
         const Real r = network.type_of_segment(s).radius;
         const bool printed = m.params.model == TransportModel::as_printed;
         // As printed: eta D over the same distance as along the yarn; crossing_factor 3 stands for eta = 1.
         if (printed) return (layers ? 1 : factor / 3) * along(s, network.segment_length[s]);
-        const Real patch = layers ? m.bridges[edge.contact].most : contact_patch(r);
+        const Real patch = layers ? m.bridges[link.contact].most : contact_patch(r);
         return factor * transverse_factor(m, yarn_of(s)) * patch / contact_distance(r);
       };
-      edge.same_material = same_material(m, m.segment_type[edge.a], m.segment_type[edge.b]);
-      const Real a = link(edge.a), b = link(edge.b);
+      link.same_material = same_material(m, m.segment_type[edge.a], m.segment_type[edge.b]);
+      const Real a = half(edge.a), b = half(edge.b);
       if (!(a > 0 && b > 0)) return false;
-      edge.conductance = edge.same_material ? 2 / (1 / a + 1 / b) : 2 * a;
-      edge.conductance_b = 2 * b;
+      link.conductance = link.same_material ? 2 / (1 / a + 1 / b) : 2 * a;
+      link.conductance_b = 2 * b;
       break;
     }
     case EdgeKind::segment_pore: {
-      if (edge.a > edge.b) std::swap(edge.a, edge.b);
       const std::size_t pore = edge.b - m.segments;
       const Real length = network.segment_length[edge.a];
       const bool warp = network.family_of_segment(edge.a) == Family::warp;
       const Real gap = warp ? network.pore_opening_y[pore] : network.pore_opening_x[pore];
       const Real pitch = warp ? network.pitch_y : network.pitch_x;
       const Real lateral = transverse_factor(m, yarn_of(edge.a)) * 0.4 * pi * length;
-      edge.conductance = yarn_pore_conductance(lateral, along(edge.a, length), 0.5 * std::max(0.0, pitch - gap), gap);
+      link.conductance = yarn_pore_conductance(lateral, along(edge.a, length), 0.5 * std::max(0.0, pitch - gap), gap);
       break;
     }
     case EdgeKind::pore_pore: {
       const std::size_t a = edge.a - m.segments, b = edge.b - m.segments;
       if (network.layer_of(edge.a) != network.layer_of(edge.b)) {
-        set_facing_pores(m, a, b, edge);
+        link.between_layers = true;
+        set_facing_pores(m, a, b, link);
         break;
       }
       const Vec3 offset = m.centre[edge.b] - m.centre[edge.a];
@@ -320,75 +402,70 @@ bool set_conductance(const WettingModel& m, const YarnNetwork& network, WettingE
                                    : 0.5 * (network.pore_opening_y[a] + network.pore_opening_y[b]);
       const Real distance = norm(offset), width = 0.5 * (gap[a] + gap[b]);
       const Real height = 0.5 * std::max<Real>(0, m.thickness - (distance - free_along));
-      edge.valve = 0.5 * (m.pore_open[a] + m.pore_open[b]);
-      edge.conductance = slot_conductance(width, height, m.liquid.viscosity, distance);
+      link.valve = 0.5 * (m.pore_open(a) + m.pore_open(b));
+      link.conductance = slot_conductance(width, height, m.liquid.viscosity, distance);
       if (m.params.model == TransportModel::as_printed) {
-        const Real radius = 0.5 * (m.pore_throat[a] + m.pore_throat[b]);
-        edge.conductance = printed_pore_diffusivity(water_self_diffusion, radius, m.params.printed_pore_velocity) *
+        const Real radius = 0.5 * (m.pore_throat(a) + m.pore_throat(b));
+        link.conductance = printed_pore_diffusivity(water_self_diffusion, radius, m.params.printed_pore_velocity) *
                            width * m.thickness / distance;
       }
       break;
     }
   }
-  return edge.conductance > 0;
+  return link.conductance > 0;
 }
 
 CrownBridge bridge_of(const WettingModel& m, const YarnNetwork& network, const Edge& edge, const FaceContact& contact) {
   const Real narrow = std::min(network.type_of_segment(edge.a).radius, network.type_of_segment(edge.b).radius);
   const auto cosine = [&](Index s) { return m.yarns[m.segment_type[s]].cos_advancing; };
-  return {contact.gap, contact.area_per_height, contact_patch(narrow), cosine(edge.a) + cosine(edge.b)};
+  return {rounded(contact.gap), rounded(contact.area_per_height), rounded(contact_patch(narrow)),
+          rounded(cosine(edge.a) + cosine(edge.b))};
 }
 
-void add_edges(WettingModel& m, const YarnNetwork& network) {
+struct NumberedLink {
+  Index a = 0, b = 0, link = 0;
+};
+
+// The links of the network, a below b; segment and pore side by side have one in any case.
+std::vector<NumberedLink> find_links(WettingModel& m, const YarnNetwork& network) {
   const std::size_t first_contact = network.edges.size() - network.face_contacts.size();
+  Numbered<LinkKind> number(m.links);
+  Numbered<CrownBridge> bridge(m.bridges);
+  std::vector<NumberedLink> found;
+  found.reserve(network.edges.size());
   for (std::size_t e = 0; e < network.edges.size(); ++e) {
-    const Edge& given = network.edges[e];
-    const bool with_pore = given.kind == EdgeKind::segment_pore || given.kind == EdgeKind::pore_pore;
-    if (with_pore && !m.params.pores) continue;
-    WettingEdge edge{.a = given.a, .b = given.b, .kind = given.kind};
-    if (!with_pore && (m.volume[edge.a] <= 0 || m.volume[edge.b] <= 0)) continue;
-    if (edge.kind == EdgeKind::face_back) {
-      edge.contact = static_cast<Index>(m.bridges.size());
-      m.bridges.push_back(bridge_of(m, network, given, network.face_contacts[e - first_contact]));
-    }
-    if (!set_conductance(m, network, edge)) continue;
-    edge.offset = m.centre[edge.b] - m.centre[edge.a];
-    m.edges.push_back(edge);
+    Edge edge = network.edges[e];
+    if (edge.a > edge.b) edge = {edge.b, edge.a, edge.kind};
+    const bool beside = edge.kind == EdgeKind::segment_pore, with_pore = beside || edge.kind == EdgeKind::pore_pore;
+    LinkKind link{.kind = edge.kind};
+    if (edge.kind == EdgeKind::face_back)
+      link.contact = bridge(bridge_of(m, network, edge, network.face_contacts[e - first_contact]));
+    const bool possible = with_pore ? m.params.pores : m.volume(edge.a) > 0 && m.volume(edge.b) > 0;
+    const bool open = possible && set_conductance(m, network, edge, link);
+    if (!open && !beside) continue;
+    if (!open) link = {.kind = edge.kind};
+    for (Real* value : {&link.conductance, &link.conductance_b, &link.valve}) *value = rounded(*value);
+    found.push_back({edge.a, edge.b, number(link)});
   }
+  return found;
 }
 
-void build_rows(WettingModel& m) {
+void build_rows(WettingModel& m, const std::vector<NumberedLink>& found) {
   m.row_start.assign(m.nodes() + 1, 0);
-  for (const WettingEdge& edge : m.edges) ++m.row_start[edge.a + 1], ++m.row_start[edge.b + 1];
+  for (const NumberedLink& link : found) ++m.row_start[link.a + 1], ++m.row_start[link.b + 1];
   for (std::size_t i = 0; i < m.nodes(); ++i) m.row_start[i + 1] += m.row_start[i];
-  std::vector<Index> next(m.row_start.begin(), m.row_start.end() - 1);
-  m.row_edge.resize(m.row_start.back());
   m.row_other.resize(m.row_start.back());
-  for (Index e = 0; e < m.edges.size(); ++e) {
-    const auto [a, b] = std::pair{m.edges[e].a, m.edges[e].b};
-    m.row_edge[next[a]] = e, m.row_other[next[a]++] = b;
-    m.row_edge[next[b]] = e, m.row_other[next[b]++] = a;
-  }
-}
-
-void build_neighbours(WettingModel& m, const YarnNetwork& network) {
-  const auto fill = [&](std::size_t rows, auto&& row, auto&& value, std::vector<Index>& start, std::vector<Index>& out) {
-    start.assign(rows + 1, 0);
-    for (const Edge& e : network.edges) {
-      if (e.kind == EdgeKind::segment_pore) ++start[row(e) + 1];
-    }
-    for (std::size_t i = 0; i < rows; ++i) start[i + 1] += start[i];
-    out.resize(start.back());
-    std::vector<Index> next(start.begin(), start.end() - 1);
-    for (const Edge& e : network.edges) {
-      if (e.kind == EdgeKind::segment_pore) out[next[row(e)]++] = value(e);
-    }
+  m.row_link.resize(m.row_start.back());
+  std::vector<Index> next(m.row_start.begin(), m.row_start.end() - 1);
+  const auto put = [&](Index node, Index other, Index link) {
+    m.row_other[next[node]] = other, m.row_link[next[node]++] = link;
   };
-  const auto segment = [](const Edge& e) { return std::min(e.a, e.b); };
-  const auto pore_node = [](const Edge& e) { return std::max(e.a, e.b); };
-  const auto pore = [&](const Edge& e) { return pore_node(e) - static_cast<Index>(m.segments); };
-  fill(m.pores, pore, segment, m.pore_start, m.pore_segment);
-  fill(m.segments, segment, pore_node, m.segment_start, m.segment_pore);
+  for (const bool to_segments : {true, false}) {
+    for (const auto& [a, b, link] : found) {
+      if ((b < m.segments) == to_segments) put(a, b, link);
+      if ((a < m.segments) == to_segments) put(b, a, link);
+    }
+  }
 }
 
 void order_by_place(WettingModel& m, const YarnNetwork& network) {
@@ -419,41 +496,35 @@ WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams
     m.fibres.push_back(type.fibre);
     m.yarns.push_back(yarn_wetting(type, params, liquid));
   }
-  for (std::size_t node = 0; node < m.nodes(); ++node)
-    m.faces.push_back(static_cast<std::uint8_t>((network.on_face(node, true) ? upper_face : 0) |
-                                                (network.on_face(node, false) ? lower_face : 0)));
-  add_segments(m, network);
-  add_pores(m, network, surroundings(network, liquid));
-  set_yarn_opening(m, network);
-  add_edges(m, network);
-  build_rows(m);
-  build_neighbours(m, network);
+  for (std::size_t s = 0; s < m.segments; ++s) m.segment_type.push_back(network.yarn_type[network.segment_yarn[s]]);
+  add_nodes(m, network);
+  build_rows(m, find_links(m, network));
   order_by_place(m, network);
   if (params.sorption == SorptionModel::shells) m.shells = build_radial_shells(params.shells);
   return m;
 }
 
-Sloped filling_pressure(const WettingModel& m, std::size_t node, Real saturation_value) {
-  if (node >= m.segments && !m.pore_wets[node - m.segments]) {
+Sloped filling_pressure(const NodeKind& node, Real saturation_value) {
+  if (node.pore() && !node.wets) {
     // Pushes its liquid out at every content; the last per cent clings to the crossings.
     constexpr Real cling = 0.01, cling_suction = 100;
-    const Real slope = m.open[node] / (1 + m.overfill[node]);
+    const Real slope = node.open / (1 + node.overfill);
     const Real s = std::max(saturation_value, driest);
     if (s >= cling) return {slope * s, slope};
     const Real rise = std::sqrt(cling / s);
     return {slope * s - cling_suction * (rise - 1), slope + 0.5 * cling_suction * rise / s};
   }
-  return pressure_at({m.entry[node], m.size_index[node], m.open[node], m.overfill[node]}, saturation_value);
+  return pressure_at({node.entry, node.size_index, node.open, node.overfill}, saturation_value);
 }
 
 Sloped hysteretic_pressure(const WettingModel& m, std::size_t node, Real s, Real reached) {
   const Real top = std::min<Real>(1, reached);
-  if (s >= top || s <= driest || (node >= m.segments && !m.pore_wets[node - m.segments])) {
+  if (s >= top || s <= driest || (node >= m.segments && !m.pore_wets(node - m.segments))) {
     return filling_pressure(m, node, s);
   }
-  const Real index = m.size_index[node];
-  const Real draining = m.entry_receding[node] * portable::pow(s, -1 / index);
-  const Real scanning = m.entry[node] * portable::pow(top, -1 / index) * portable::pow(top / s, scanning_power);
+  const Real index = m.size_index(node);
+  const Real draining = m.entry_receding(node) * portable::pow(s, -1 / index);
+  const Real scanning = m.entry(node) * portable::pow(top, -1 / index) * portable::pow(top / s, scanning_power);
   if (draining < scanning) return {-draining, draining / (index * s)};
   return {-scanning, scanning_power * scanning / s};
 }
@@ -465,7 +536,7 @@ Contents conditioned_contents(const WettingModel& m, const Air& air) {
   for (const Fibre& fibre : m.fibres) regain.push_back(equilibrium_regain(fibre, air.humidity));
   for (std::size_t s = 0; s < m.segments; ++s) {
     const Real w = regain[m.segment_type[s]];
-    contents.sorbed_kg.push_back(m.dry_mass[s] * w);
+    contents.sorbed_kg.push_back(m.dry_mass(s) * w);
     contents.shell_regain.insert(contents.shell_regain.end(), static_cast<std::size_t>(m.shells.count), w);
   }
   if (m.params.hysteresis) contents.reached_saturation.assign(m.nodes(), 0);
@@ -475,17 +546,17 @@ Contents conditioned_contents(const WettingModel& m, const Air& air) {
 Real current_volume(const WettingModel& m, const Contents& contents, std::size_t node) {
   const auto growth = [&](std::size_t s) {
     const YarnWetting& yarn = m.yarns[m.segment_type[s]];
-    return swollen_area(yarn.area_swelling, contents.sorbed_kg[s] / m.dry_mass[s], yarn.regain_65,
+    return swollen_area(yarn.area_swelling, contents.sorbed_kg[s] / m.dry_mass(s), yarn.regain_65,
                         yarn.swelling_regain);
   };
-  if (m.params.model == TransportModel::as_printed || m.volume[node] <= 0) return m.volume[node];
-  if (node < m.segments) return m.yarns[m.segment_type[node]].area_swelling > 0 ? m.volume[node] * growth(node)
-                                                                                : m.volume[node];
+  if (m.params.model == TransportModel::as_printed || m.volume(node) <= 0) return m.volume(node);
+  if (node < m.segments) return m.yarns[m.segment_type[node]].area_swelling > 0 ? m.volume(node) * growth(node)
+                                                                                : m.volume(node);
   Real taken = 0;
   for (const Index s : m.segments_of_pore(node - m.segments)) {
-    if (m.yarns[m.segment_type[s]].area_swelling > 0) taken += 0.25 * m.yarn_volume[s] * (growth(s) - 1);
+    if (m.yarns[m.segment_type[s]].area_swelling > 0) taken += 0.25 * m.yarn_volume(s) * (growth(s) - 1);
   }
-  return shrunk_pore(m.volume[node], taken);
+  return shrunk_pore(m.volume(node), taken);
 }
 
 Real saturation(const WettingModel& m, const Contents& contents, std::size_t node) {
@@ -499,14 +570,14 @@ Real saturation(const WettingModel& m, const Contents& contents, std::size_t nod
 }
 
 Real node_pressure(const WettingModel& m, const Contents& contents, std::size_t node) {
-  if (m.volume[node] <= 0 || m.params.model == TransportModel::as_printed) return 0;
+  if (m.volume(node) <= 0 || m.params.model == TransportModel::as_printed) return 0;
   const Real s = saturation(m, contents, node);
   const Real reached = contents.reached_saturation.empty() ? 0 : contents.reached_saturation[node];
   return m.params.hysteresis ? hysteretic_pressure(m, node, s, reached).value : filling_pressure(m, node, s).value;
 }
 
 Real node_regain(const WettingModel& m, const Contents& contents, std::size_t segment) {
-  return contents.sorbed_kg[segment] / m.dry_mass[segment];
+  return contents.sorbed_kg[segment] / m.dry_mass(segment);
 }
 
 namespace {

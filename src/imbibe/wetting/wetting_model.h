@@ -15,6 +15,8 @@
 // cloth (plain polyester) and is a plain parameter.
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -122,17 +124,38 @@ struct YarnWetting {
   Real shell_rate = 0;       // 1/s, D_f/R_f^2
 };
 
-struct WettingEdge {
-  Index a = 0, b = 0;
+// What alike nodes share. The cloth repeats itself, so a sheet of millions of nodes has a few dozen kinds.
+struct NodeKind {
+  Index type = no_index;      // of a segment: into WettingModel::yarns
+  std::uint8_t faces = 0;     // upper_face, lower_face, both; 0 between other layers
+  bool wets = false;          // of a pore
+  bool pore() const { return type == no_index; }
+  Real dry_mass = 0;          // kg, of a segment: dry fibre
+  Real yarn_volume = 0;       // m3, of a segment, pi r^2 length: fibres and voids
+  Real volume = 0;            // m3 that s = 1 means: voids of the yarn, or the pore (both unswollen)
+  Real entry = 0, entry_receding = 0, open = 0;  // Pa, as in YarnWetting
+  Real overfill = 0, size_index = 0;
+  Real supply_conductance = 0;   // liquid on the face -> node, units as LinkKind; pores see capillary.h (a tube) except
+                                 // in the model as printed
+  Real release_conductance = 0;  // m3/(Pa s), over-full node -> its faces
+  Real vapour_area = 0;       // m2, of its faces that see the air
+  Real throat = 0, breakthrough = 0;  // of a pore: m, Pa
+  Real mouth = 0;             // of a pore: m2, w_x w_y
+  auto operator<=>(const NodeKind&) const = default;
+};
+
+// What alike links share.
+struct LinkKind {
   EdgeKind kind = EdgeKind::along_yarn;
   bool same_material = true;
+  bool between_layers = false;  // of pores
+  Index contact = no_index;  // face_back: into WettingModel::bridges
   // physical: m3/(Pa s). kunzel, as_printed: m (area/length x void share), multiplied by a diffusivity. Crossing of
   // different materials: `conductance` is the half link on a's side, `conductance_b` on b's.
   Real conductance = 0;
   Real conductance_b = 0;
   Real valve = 0;     // Pa, P_open of a pore-pore link
-  Index contact = no_index;  // face_back: into WettingModel::bridges
-  Vec3 offset{};      // m, centre of b minus centre of a, sheet coordinates
+  auto operator<=>(const LinkKind&) const = default;
 };
 
 // The contact of two crowns of facing layers (face_back.h).
@@ -140,6 +163,7 @@ struct CrownBridge {
   Real gap = 0, area_per_height = 0;  // m
   Real most = 0;      // m2, area that the edge's conductance stands for
   Real cosines = 0;   // cos theta_a + cos theta_b
+  auto operator<=>(const CrownBridge&) const = default;
 };
 
 struct WettingModel {
@@ -156,50 +180,66 @@ struct WettingModel {
   std::vector<Fibre> fibres;          // per yarn type
   std::vector<YarnWetting> yarns;     // per yarn type
 
-  // Segments
+  // Nodes: numbers of their kinds, whose values are rounded to 30 bits (1e-9), so that rounding makes no kinds of its own.
+  std::vector<NodeKind> kinds;
+  std::vector<Index> kind;
   std::vector<Index> segment_type;
-  std::vector<Real> dry_mass;         // kg, dry fibre
-  std::vector<Real> yarn_volume;      // m3, pi r^2 length: fibres and voids
-  std::vector<Real> supply_conductance;   // per node: liquid on the face -> node, units as WettingEdge; pores see
-                                          // capillary.h (a tube) except in the model as printed
-  std::vector<Real> release_conductance;  // m3/(Pa s), per node: over-full node -> its faces
-  std::vector<Real> vapour_area;      // m2, per node, of its faces that see the air
-  std::vector<std::uint8_t> faces;    // per node: upper_face, lower_face, both; 0 between other layers
-
-  // Pores
-  std::vector<Real> pore_throat, pore_entry, pore_entry_receding, pore_open, pore_breakthrough;
-  std::vector<Real> pore_mouth;       // m2, w_x w_y
-  std::vector<char> pore_wets;
-
-  // Nodes
-  std::vector<Real> volume;           // m3 that s = 1 means: voids of the yarn, or the pore (both unswollen)
-  std::vector<Real> entry, entry_receding, open, overfill, size_index;  // per node, as above
   std::vector<Vec3> centre;
+  const NodeKind& at(std::size_t node) const { return kinds[kind[node]]; }
+  Real volume(std::size_t node) const { return at(node).volume; }
+  Real entry(std::size_t node) const { return at(node).entry; }
+  Real entry_receding(std::size_t node) const { return at(node).entry_receding; }
+  Real open(std::size_t node) const { return at(node).open; }
+  Real overfill(std::size_t node) const { return at(node).overfill; }
+  Real size_index(std::size_t node) const { return at(node).size_index; }
+  Real supply_conductance(std::size_t node) const { return at(node).supply_conductance; }
+  Real release_conductance(std::size_t node) const { return at(node).release_conductance; }
+  Real vapour_area(std::size_t node) const { return at(node).vapour_area; }
+  std::uint8_t faces(std::size_t node) const { return at(node).faces; }
+  Real dry_mass(std::size_t segment) const { return at(segment).dry_mass; }
+  Real yarn_volume(std::size_t segment) const { return at(segment).yarn_volume; }
+  // `pore` counts from 0.
+  const NodeKind& pore(std::size_t pore) const { return at(segments + pore); }
+  bool pore_wets(std::size_t i) const { return pore(i).wets; }
+  Real pore_throat(std::size_t i) const { return pore(i).throat; }
+  Real pore_open(std::size_t i) const { return pore(i).open; }
+  Real pore_breakthrough(std::size_t i) const { return pore(i).breakthrough; }
+  Real pore_mouth(std::size_t i) const { return pore(i).mouth; }
 
-  // Edges and, for each node, its entries in them (fixed compressed rows)
-  std::vector<WettingEdge> edges;
+  // Links, as the rows of a matrix: those of node i are [row_start[i], row_start[i+1]), to segments first, then to pores.
+  // Each stands in the rows of both its nodes; a is the node with the lower number. Segment and pore that lie side by
+  // side have a link even where no liquid can pass (conductance 0): swelling and fibres without voids ask for it.
+  std::vector<LinkKind> links;
   std::vector<CrownBridge> bridges;
   std::vector<Index> row_start;       // nodes + 1
-  std::vector<Index> row_edge, row_other;
+  std::vector<Index> row_other, row_link;
   // All nodes by place, pitch row after pitch row and along each row: neighbours in the cloth stand close together in
   // the linear systems too, whose incomplete factors then keep their links.
   std::vector<Index> by_place;
 
-  // Who lies beside whom, whether liquid can pass or not (swelling, fibres without voids).
-  std::vector<Index> pore_start, pore_segment;     // segments of pore i: [start[i], start[i+1])
-  std::vector<Index> segment_start, segment_pore;  // pores of segment i, as node numbers
+  // Who lies beside whom, pores as node numbers.
   std::span<const Index> segments_of_pore(std::size_t pore) const {
-    return {pore_segment.data() + pore_start[pore], pore_segment.data() + pore_start[pore + 1]};
+    const std::size_t node = segments + pore;
+    return {row_other.data() + row_start[node], first_pore(node)};
   }
   std::span<const Index> pores_of_segment(std::size_t segment) const {
-    return {segment_pore.data() + segment_start[segment], segment_pore.data() + segment_start[segment + 1]};
+    return {first_pore(segment), row_other.data() + row_start[segment + 1]};
+  }
+  const Index* first_pore(std::size_t node) const {
+    const Index* entry = row_other.data() + row_start[node];
+    const Index* end = row_other.data() + row_start[node + 1];
+    while (entry != end && *entry < segments) ++entry;
+    return entry;
   }
 
   RadialShells shells;                // sorption = shells
 };
 
 // p(s) of a node on its filling branch; a pore that does not wet pushes its liquid out at every content.
-Sloped filling_pressure(const WettingModel& model, std::size_t node, Real saturation);
+Sloped filling_pressure(const NodeKind& node, Real saturation);
+inline Sloped filling_pressure(const WettingModel& model, std::size_t node, Real saturation) {
+  return filling_pressure(model.at(node), saturation);
+}
 // As above; below the highest saturation reached since the node was dry, the draining branch and the way to it.
 Sloped hysteretic_pressure(const WettingModel& model, std::size_t node, Real saturation, Real reached);
 

@@ -46,10 +46,10 @@ void release_surplus(const WettingModel& m, Contents& contents, Real dt, std::ve
   if (!m.params.swelling) return;
   for (std::size_t node = m.segments; node < m.nodes(); ++node) {
     Real& held = contents.liquid_kg[node];
-    if (held <= m.liquid.density * m.volume[node] * least_pore) continue;
-    const Real most = m.liquid.density * current_volume(m, contents, node) * (1 + m.overfill[node]);
+    if (held <= m.liquid.density * m.volume(node) * least_pore) continue;
+    const Real most = m.liquid.density * current_volume(m, contents, node) * (1 + m.overfill(node));
     if (held <= most) continue;
-    const Real excess = filling_pressure(m, node, held / most * (1 + m.overfill[node])).value - m.open[node];
+    const Real excess = filling_pressure(m, node, held / most * (1 + m.overfill(node))).value - m.open(node);
     const Real surplus = held - most;
     released.push_back({static_cast<Index>(node), surplus, excess, surplus / (m.liquid.density * dt)});
     held = most;
