@@ -164,7 +164,7 @@ TEST(Embedding, AHangingStripWicksByFriesAndDreyerToJurinsHeight) {
   const Placed soft(n, std::move(sheet));
   const GravityField field = soft.scratch.gravity();
   const YarnWetting& yarn = m.yarns[0];
-  const Real area = m.yarn_volume[0] / n.segment_length[0] * yarn.void_share, rho = m.liquid.density;
+  const Real area = m.yarn_volume(0) / n.segment_length[0] * yarn.void_share, rho = m.liquid.density;
   // The front's own parameters from the sorptivity: with a sharp front S^2 = 2 a; Jurin's height is the content that
   // stands at rest, P_e/(rho g) lambda/(lambda - 1).
   const Real a = 0.5 * sorptivity_squared(yarn.axial, yarn.entry, m.liquid.viscosity, yarn.void_share, 40);

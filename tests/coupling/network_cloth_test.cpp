@@ -88,7 +88,7 @@ TEST(NetworkCloth, ClingsWhereItsYarnsAreWetByBridgesBetweenCrowns) {
   const Sheet& sheet = wet.cloth.soft.sheet;
   EXPECT_EQ(sheet.cling[60], 0);
   for (std::size_t s = 0; s < wet.fabric.network.segments(); ++s)
-    wet.contents.liquid_kg[s] = 0.5 * wet.model.liquid.density * wet.model.volume[s];
+    wet.contents.liquid_kg[s] = 0.5 * wet.model.liquid.density * wet.model.volume(s);
   wet.weigh_it();
   const YarnType& yarn = wet.fabric.network.yarn_types.front();
   const Real crowns = 0.5 / (wet.fabric.network.pitch_x * wet.fabric.network.pitch_y);
