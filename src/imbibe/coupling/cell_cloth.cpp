@@ -5,6 +5,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/portable.h"
+#include "imbibe/coupling/hem_drops.h"
 #include "imbibe/geometry/direction.h"
 #include "imbibe/wetting/evaporation.h"
 #include "imbibe/wetting/hem_drop.h"
@@ -176,27 +177,6 @@ struct Births {
   }
 };
 
-// `count` particles as a drop that hangs under the origin: the points of a cubic lattice nearest to one of them, moved down
-// until the highest is one spacing times `hanging` below.
-std::vector<Vec3> drop_places(std::size_t count, Real spacing, const Vec3& down) {
-  const Vec3 a = any_perpendicular(down), b = cross(down, a);
-  const int reach = static_cast<int>(std::ceil(std::cbrt(static_cast<Real>(count)))) + 1;
-  std::vector<std::array<int, 3>> points;
-  for (int k = -reach; k <= reach; ++k)
-    for (int j = -reach; j <= reach; ++j)
-      for (int i = -reach; i <= reach; ++i) points.push_back({k, j, i});
-  const auto square = [](const std::array<int, 3>& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; };
-  std::sort(points.begin(), points.end(), [&](const auto& p, const auto& q) {
-    return square(p) != square(q) ? square(p) < square(q) : p > q;  // among equals the lower ones: a drop hangs
-  });
-  points.resize(count);
-  int highest = reach;
-  for (const auto& p : points) highest = std::min(highest, p[0]);
-  std::vector<Vec3> places;
-  for (const auto& p : points) places.push_back(spacing * ((p[0] - highest + hanging) * down + Real(p[1]) * a + Real(p[2]) * b));
-  return places;
-}
-
 // What hangs within a drop's width of `cell` is one drop with it: where that makes kg, it is drawn together there.
 bool gather_waiting(CellCloth& cloth, std::span<const std::uint8_t> held, std::span<const Index> waiting, Index cell,
                     Real kg, Real width) {
@@ -250,7 +230,7 @@ void release(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const 
   Bounds region;
   for (const Vec3& x : cloth.soft.sheet.position) region.include(x);
   const Vec3 down = normalized(gravity);
-  const std::vector<Vec3> drop = drop_places(count, spacing, down);
+  const std::vector<Vec3> drop = hanging_drop(count, spacing, hanging, down);
   region.grow(norm(drop.back()) + 4 * spacing);
   scratch.occupancy.reset(liquid.particles.position, region, clear_of_others * spacing);
   const Births births{cloth, scratch, liquid, solid_at, report};

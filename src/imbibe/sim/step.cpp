@@ -9,6 +9,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
 #include "imbibe/coupling/absorption.h"
+#include "imbibe/coupling/hem_drops.h"
 #include "imbibe/coupling/release.h"
 #include "imbibe/coupling/wet_wall.h"
 #include "imbibe/sim/cloth_stage.h"
@@ -223,11 +224,64 @@ MassLeft leave_cloth(const Liquid& liquid, const ReleaseReport& released, const 
   return left;
 }
 
+Real hem_neck_of(const World& world) {
+  const LiquidKind& kind = world.liquid.kind;
+  return hem_neck(kind.surface_tension, kind.density, norm(world.gravity));
+}
+
+// Liquid that has run down to a hem joins the drop that hangs there.
+std::size_t stop_at_hem(World& world, std::size_t index, StepScratch& scratch) {
+  if (world.liquid.particles.size() == 0) return 0;
+  Textile& textile = world.textiles[index];
+  const YarnNetwork& network = textile.fabric->network;
+  const ClothPlace place = place_of(world, index, scratch);
+  const Real neck = hem_neck_of(world);
+  std::vector<std::uint8_t> at_hem;
+  find_hem(network, place, world.gravity, neck, at_hem);
+  scratch.dead.assign(world.liquid.particles.size(), 0);
+  const CaughtAtHem caught =
+      catch_at_hem(network, place, at_hem, world.gravity, neck, textile.cloth->soft, sheet_of(world, index, scratch).held,
+                   textile.exchange, world.liquid, scratch.dead);
+  textile.cloth->borrowed_kg = std::max(0.0, textile.cloth->borrowed_kg - caught.owed_kg);
+  if (caught.particles > 0) remove_particles(world.liquid.particles, scratch.dead);
+  return caught.particles;
+}
+
+// What a soft cloth gives off: drops at its hem, and elsewhere particles on the faces as from a flat one.
+ReleaseReport release_from_cloth(World& world, std::size_t index, std::span<const ReleasedLiquid> released,
+                                 const SolidAt& taken, StepScratch& scratch) {
+  Textile& textile = world.textiles[index];
+  const YarnNetwork& network = textile.fabric->network;
+  const ClothPlace place = place_of(world, index, scratch);
+  const Real neck = hem_neck_of(world);
+  std::vector<std::uint8_t> at_hem;
+  find_hem(network, place, world.gravity, neck, at_hem);
+  std::vector<Real>& waiting = textile.exchange.waiting_kg;
+  std::vector<Real> hem_kg(waiting.size(), 0);
+  for (std::size_t k = 0; k < waiting.size(); ++k)
+    if (at_hem[k]) std::swap(hem_kg[k], waiting[k]);
+  std::vector<ReleasedLiquid> elsewhere;
+  for (const ReleasedLiquid& r : released) {
+    if (at_hem[r.node]) hem_kg[r.node] += r.kg;
+    else elsewhere.push_back(r);
+  }
+  ReleaseReport report = release_particles(network, place, *textile.faces, elsewhere, world.gravity, taken,
+                                           textile.exchange, world.liquid);
+  for (std::size_t k = 0; k < waiting.size(); ++k)
+    if (at_hem[k]) waiting[k] += hem_kg[k];
+  const ReleaseReport drops =
+      release_hem_drops(network, place, at_hem, world.gravity, neck, taken, textile.exchange, world.liquid);
+  report.particles += drops.particles, report.kg += drops.kg, report.momentum += drops.momentum;
+  report.places.insert(report.places.end(), drops.places.begin(), drops.places.end());
+  return report;
+}
+
 // Textile step of dt: supply by the liquid on the faces, the network, then whole particles die or are born.
 void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, StepReport& report, Real& next_interval) {
   Textile& textile = world.textiles[index];
   const YarnNetwork& network = textile.fabric->network;
   const ClothPlace place = place_of(world, index, scratch);
+  if (textile.cloth) report.absorbed += stop_at_hem(world, index, scratch);
   Footprint& footprint = scratch.footprint;
   find_footprint(world.liquid, network, place, *textile.faces, world.gravity, textile.exchange, footprint);
   // Taken from `world.time`, the beginning of the interval or (moving liquid) a time within it: step() lands on the
@@ -266,9 +320,11 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
     join_cloth(world.liquid, footprint, scratch.dead, place, sheet_of(world, index, scratch), textile.cloth->soft);
   }
   remove_particles(world.liquid.particles, scratch.dead);
+  const SolidAt taken = [&](const Vec3& at) { return solid_at(world, index, at); };
   const ReleaseReport released =
-      release_particles(network, place, *textile.faces, wetting.released, world.gravity,
-                        [&](const Vec3& at) { return solid_at(world, index, at); }, textile.exchange, world.liquid);
+      textile.cloth ? release_from_cloth(world, index, wetting.released, taken, scratch)
+                    : release_particles(network, place, *textile.faces, wetting.released, world.gravity, taken,
+                                        textile.exchange, world.liquid);
   report.released += released.particles;
   if (released.particles > 0) world.pace.resting = false;
   if (textile.cloth) {
