@@ -152,6 +152,19 @@ TEST(Absorption, LiquidGivenBackPaysDebtsThenIsCreditAndWaitsOnceItMakesAParticl
   EXPECT_NEAR(std::accumulate(s.exchange.waiting_kg.begin(), s.exchange.waiting_kg.end(), 0.0), 1.1 * mass, 1e-12 * mass);
 }
 
+TEST(Absorption, ADebtorDiesBesideParticlesWithCreditAndTheBooksAddUp) {
+  Scene s;
+  s.add_layer(2, 0, 0);
+  const Real mass = s.liquid.particle_mass;
+  s.liquid.particles.owed_kg = {1.2 * mass, -0.03 * mass, -0.04 * mass, -0.03 * mass};
+  s.find();
+  std::vector<std::uint8_t> dead(4, 0);
+  const Transfer transfer = absorb_particles(s.liquid, s.footprint, s.exchange, dead);
+  ASSERT_EQ(transfer.particles, 1u);
+  const Real waiting = std::accumulate(s.exchange.waiting_kg.begin(), s.exchange.waiting_kg.end(), 0.0);
+  EXPECT_NEAR(s.owed() - waiting + transfer.kg, 1.1 * mass, 1e-12 * mass);
+}
+
 TEST(Absorption, MassThatWaitsOnTheFaceIsTakenBackFirst) {
   Scene s;
   s.add_layer(1, 0, 0);

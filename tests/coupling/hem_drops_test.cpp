@@ -38,7 +38,9 @@ TEST(HemDrops, OnlyTheLowerEdgeHoldsDrops) {
   const YarnNetwork& n = cloth.fabric.network;
   for (std::size_t k = 0; k < n.nodes(); ++k) {
     const Vec3& c = n.node_centre(k);
-    const bool lowest = c.y + 0.5 * n.size_y < 0.5 * n.size_x - std::abs(c.x) && c.y + 0.5 * n.size_y <= cloth.neck;
+    const Real to_hem = c.y + 0.5 * n.size_y, to_side = 0.5 * n.size_x - std::abs(c.x);
+    if (std::abs(to_hem - to_side) < 1e-9) continue;  // on the diagonal both edges are as near
+    const bool lowest = to_hem < to_side && to_hem <= cloth.neck;
     EXPECT_EQ(cloth.at_hem[k] != 0, lowest) << c.x << " " << c.y;
   }
   std::vector<std::uint8_t> flat;

@@ -52,12 +52,15 @@ void pass_on_debts(const Liquid& liquid, const Footprint& f, std::span<const std
     settled[i] = left >= 0;
   }
   // A patch without debtors left: the difference (rounding, or debts that the dead owed beyond their mass) stays in
-  // the books as waiting mass, negative where a neighbour will have to pay.
+  // the books as waiting mass, negative where a neighbour will have to pay. Survivors may have credit on balance, which
+  // they keep.
   for (std::size_t p = 0; p < f.particle.size(); ++p) {
     const Index i = f.patch_of[p];
     if (dying[i] == 0 || settled[i]) continue;
     settled[i] = 1;
-    exchange.waiting_kg[f.links[f.first_link[p]].node] -= total[i] - static_cast<Real>(dying[i]) * liquid.particle_mass;
+    const Real kept = std::min(surviving[i], 0.0);
+    exchange.waiting_kg[f.links[f.first_link[p]].node] -=
+        total[i] - static_cast<Real>(dying[i]) * liquid.particle_mass - kept;
   }
 }
 

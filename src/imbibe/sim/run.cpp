@@ -28,7 +28,8 @@ RunEnd run(World& world, const RunPlan& plan, const RunHooks& hooks) {
     if (world.time >= until) return RunEnd::finished;
     options.until = next_output(world.time, plan.every, until);
     report = step(world, options, scratch);
-    const bool reached = world.time >= options.until;
+    // A step that ends by another bound may stop a rounding error before an output; the next one counts from the one after.
+    const bool reached = world.time >= options.until || next_output(world.time, plan.every, until) > options.until;
     if (hooks.after_step) hooks.after_step(world, report);
     if (reached && hooks.at_output) hooks.at_output(world, report);
     if (plan.max_steps > 0 && world.step - first_step >= plan.max_steps)
