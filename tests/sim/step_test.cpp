@@ -62,6 +62,18 @@ TEST(Run, WritesOutputsAtExactMultiplesAndAtTheEnd) {
   EXPECT_EQ(times[3], 0.25);
 }
 
+TEST(Run, ADropARoundingErrorBeforeAnOutputDoesNotTakeItsPlace) {
+  World world = falling_drops(1, 0);
+  world.sources[0].start = 0.3;  // 3 x 0.1 is the next larger number
+  ASSERT_LT(world.sources[0].start, 3 * 0.1);
+  std::vector<Real> times;
+  RunHooks hooks;
+  hooks.at_output = [&](const World& w, const StepReport&) { times.push_back(w.time); };
+  run(world, {.until = 0.42, .every = 0.1, .max_steps = 0, .step = {}}, hooks);
+  ASSERT_EQ(times.size(), 6u);
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(times[k], 0.1 * static_cast<Real>(k), 1e-15);  // rounding
+}
+
 TEST(Run, StopsWhenAskedAfterAWholeStep) {
   World world = falling_drops(1, 0);
   int steps = 0;
