@@ -14,6 +14,7 @@ void add_network(std::vector<Case>& cases);
 void add_sorption(std::vector<Case>& cases);
 void add_drying(std::vector<Case>& cases);
 void add_printed(std::vector<Case>& cases);
+void add_cloth(std::vector<Case>& cases);
 void add_coupled(std::vector<Case>& cases);
 void add_flows(std::vector<Case>& cases);
 void add_drops(std::vector<Case>& cases);

@@ -15,6 +15,7 @@ const std::vector<Case>& all_cases() {
     add_sorption(all);
     add_drying(all);
     add_printed(all);
+    add_cloth(all);
     add_coupled(all);
     return all;
   }();
