@@ -25,7 +25,7 @@ textiles:
     weave: plain
     warp: {{fibre: cotton, linear_density: 20 tex, density: 30 /cm}}
     weft: {{fibre: cotton, linear_density: 20 tex, density: 30 /cm}}
-limits: {{max_particles: 1e8, max_memory: 20 GB}}
+limits: {{max_particles: 1e8, max_memory: 20 GB, max_disk: 10000 GB}}
 )",
                                        liquid.empty() ? "  particle_mass: 0.1 mg" : liquid, side, side);
   const Scene scene = read_scene_text(text, "bench.yaml");
