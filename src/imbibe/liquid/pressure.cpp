@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "imbibe/core/portable.h"
+
 namespace imbibe {
 
 using simd::Floats;
@@ -11,6 +13,23 @@ using simd::Floats4;
 using simd::lanes;
 
 namespace {
+
+// The stress that the pairs of a body-centred lattice of the rest density carry at k = 1, over rho0: its second moment
+// V sum |W'| r/3, 0.984 at H = 2.5 dx and 1 in the continuum. k bears the load, so it is as much larger than p/rho0.
+float lattice_stress(Real support_in_spacings) {
+  const Real edge = portable::cbrt(2.0), h = support_in_spacings;
+  const Kernel kernel(h);
+  const int reach = 2 * (static_cast<int>(std::ceil(h / edge)) + 1);
+  Real sum = 0;
+  for (int z = -reach; z <= reach; ++z)
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = -reach; x <= reach; ++x) {
+        if ((x - y) % 2 != 0 || (x - z) % 2 != 0) continue;
+        const Real square = 0.25 * edge * edge * static_cast<Real>(x * x + y * y + z * z);
+        sum -= static_cast<Real>(kernel.slope(static_cast<float>(std::sqrt(square)))) * square / 3;
+      }
+  return static_cast<float>(sum);
+}
 
 // f.acceleration = a(k), k in position.w.
 void pressure_acceleration(LiquidFields& f) {
@@ -182,11 +201,12 @@ PressureReport project_velocity(LiquidFields& f, const PressureParams& params, R
   if (sheets != nullptr) sheets->book(f.pressure, dt_s);
   report.residual = relative();
   report.converged = report.residual < params.tolerance;
+  const float stress = f.rest_density * lattice_stress(static_cast<Real>(f.neighbours.kernel.support) / static_cast<Real>(f.spacing));
   parallel_for(f.count, [&](std::size_t i) {
     const float k = f.pressure[i];
     warm[i] = k;
     f.wall_push[i] = 2 * k;
-    f.pressure[i] = k * f.rest_density * (1 - f.boundary.wall[i].w);
+    f.pressure[i] = k * stress * (1 - f.boundary.wall[i].w);
     f.position[i].w = 0;
   });
   return report;

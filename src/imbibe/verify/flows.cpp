@@ -136,8 +136,10 @@ CaseResult channel(CaseRunner& runner, bool belt) {
   std::vector<Convergence::Row> rows;
   std::vector<std::pair<Real, Real>> deviations;  // time in h2/nu, rms
   std::vector<Real> place, computed, theory;
-  for (const int across : runner.form(std::vector<int>{8, 12}, std::vector<int>{8, 12, 16})) {
-    const Real spacing = 2 * h / across;
+  // Whole cells of the lattice between the plates: stretched by 5 % to fit it is 2 % less viscous.
+  for (const int cells : runner.form(std::vector<int>{6, 9}, std::vector<int>{6, 9, 13})) {
+    const Real spacing = 2 * h / (cells * std::cbrt(2.0));
+    const int across = static_cast<int>(std::lround(2 * h / spacing));
     std::vector<std::string> o{mass_for(spacing, 1000), set("output.every", 0.3 * settled, "s"), set("duration", 1.5 * settled, "s"),
                                set("limits.max_step", settled / 100, "s")};
     if (belt) o.push_back("gravity=[0, 0, 0]"), o.push_back(fmt::format("solids[1].surface_velocity=[{}, 0, 0]", speed));
@@ -152,7 +154,7 @@ CaseResult channel(CaseRunner& runner, bool belt) {
         if (std::abs(x.x) > 2 * h || std::abs(x.z) > 2 * h - 3 * spacing) continue;
         const Real wanted = belt ? couette(x.y, now.time, h, nu, speed) : poiseuille(x.y, now.time, h, nu, g);
         square += (u.x - wanted) * (u.x - wanted), count += 1;
-        bins[static_cast<std::size_t>(std::clamp((x.y + h) / spacing, 0.0, across - 1.0))].add(x.y, u.x);
+        bins[static_cast<std::size_t>(std::clamp((x.y + h) / (2 * h) * across, 0.0, across - 1.0))].add(x.y, u.x);
       }
       steady = std::sqrt(square / count) / greatest;
       deviations.emplace_back(now.time / settled, steady);
@@ -172,9 +174,8 @@ CaseResult channel(CaseRunner& runner, bool belt) {
     r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "project's goal"));
   }
   if (!belt)
-    r.notes.push_back("The block is born on a body-centred lattice, which this slow flow does not mix. There a sum over pairs along their lines of centres "
-                      "has 1.019 of the viscosity for shear along the lattice's axes (fourth moments of the lattice and kernel); on a simple cubic lattice it "
-                      "would be 0.851, and the flow 1.17 times too fast at any resolution.");
+    r.notes.push_back("The block is born on a body-centred lattice, which this slow flow does not mix; its viscosity is that of the liquid within 0.5 % (on a "
+                      "simple cubic one 0.85 of it). What is left is slip: the profile stands 0.1 spacings over the no-slip one, so the error falls with the first power.");
   r.charts.push_back(chart_of("Profile at t = 1.5 h2/nu", "y", "mm", "velocity", "mm/s", place, {{"solver", computed, ""}, {"series", theory, ""}}));
   r.parameters = {{"plates", "1 mm apart"}, {"liquid", "nu = 1e-4 m2/s"}, {belt ? "upper plate" : "force", belt ? "12 mm/s" : "9.81 m/s2"}};
   return r;
