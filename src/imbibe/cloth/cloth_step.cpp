@@ -138,6 +138,7 @@ void touch_solids(Step& s, Real h) {
   for (std::size_t k = 0; k < solids; ++k) {
     const ClothSolid& solid = s.loads.solids[k];
     const Vec3 moved = s.elapsed * solid.velocity;
+    const Real reach = 0.5 * s.params.hand.thickness + rise_between_nodes(solid.shape, s.work.topology.shortest_edge);
     struct Given {
       Vec3 impulse{};
       std::size_t contacts = 0;
@@ -152,7 +153,7 @@ void touch_solids(Step& s, Real h) {
         if (w == 0 || clearance > h * norm(v - solid.velocity)) continue;
         const SolidTouch touch = touch_solid(solid, moved,
                                              {.position = s.sheet.position[i], .velocity = v, .inverse_mass = w,
-                                              .half_thickness = 0.5 * s.params.hand.thickness,
+                                              .half_thickness = reach,
                                               .pull = s.sheet.cling[i] * s.work.node_area[i] / contact_passes}, h);
         clearance = touch.clearance;
         if (!touch.touches) continue;

@@ -38,6 +38,14 @@ Approach follow(const Shape& shape, const Vec3& from, const Vec3& step, Real rea
 
 }  // namespace
 
+Real rise_between_nodes(const Shape& shape, Real edge) {
+  // The circle through the corners has the radius edge/sqrt(2); the rise over its middle, no more than of a half ball.
+  const auto over = [&](Real radius) { return std::min(0.25 * edge * edge / radius, radius); };
+  if (const auto* ball = std::get_if<Sphere>(&shape)) return over(ball->radius);
+  if (const auto* rod = std::get_if<Cylinder>(&shape)) return over(rod->radius);
+  return 0;
+}
+
 SolidTouch touch_solid(const ClothSolid& solid, const Vec3& moved, const SolidNode& node, Real dt) {
   // In the frame of the solid.
   const Vec3 from = node.position - moved, relative = node.velocity - solid.velocity;

@@ -67,9 +67,9 @@ CellGrid free_form_cells(const Sheet& sheet, std::optional<Real> size, Real capa
   return grid;
 }
 
-// A particle becomes so many parcels that a full cell holds about ten: with one or two the cells would be over-full by one
+// A particle becomes so many parcels that a full cell holds about twenty: with one or two the cells would be over-full by one
 // and empty without it, and what a cloth takes would depend on the size of its cells.
-constexpr Real parcels_of_a_full_cell = 10;
+constexpr Real parcels_of_a_full_cell = 20;
 constexpr int most_parcels_of_a_particle = 64;
 
 // Where a particle of edge dx that meets the cloth at m wets it: places spread evenly over a disc of its cross-section.
