@@ -5,9 +5,12 @@
 #include <numeric>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/geometry/moving_mesh.h"
+#include "imbibe/io/run_folder.h"
 #include "imbibe/sim/checkpoint.h"
 #include "imbibe/sim/measures.h"
 #include "imbibe/sim/state_hash.h"
+#include "imbibe/view/frame_from_world.h"
 #include "support/scene_runs.h"
 
 namespace imbibe {
@@ -154,6 +157,26 @@ TEST(NetworkClothRun, DriesBackToItsPlaceAndWeight) {
   EXPECT_NEAR(again, dry, 0.02 * std::abs(dry));
   EXPECT_LT(std::abs(carried(world)), 1e-3 * added);  // back in balance with the air, where it weighs nothing more
   EXPECT_LE(mass_balance(world).error(), 1e-10);
+}
+
+TEST(NetworkClothRun, FilesAndPicturesShowTheYarnsWhereTheClothIs) {
+  World world = small_hammock({"liquid.drops=[]", "textiles[0].start.yarns=0.9"});
+  test::run_until(world, 0.3);
+  const Textile& textile = world.textiles[0];
+  const Sheet& sheet = sheet_of(world).sheet;
+  MovingMesh surface;
+  set_step(surface, sheet.position, sheet.position, sheet.triangles);
+  const PolyData yarns = textile_poly_data(textile, node_saturations(textile, world.air));
+  const Frame frame = frame_from_world(world, "");
+  ASSERT_EQ(yarns.points.size(), textile.fabric->network.points.size());
+  EXPECT_EQ(frame.yarns.points, yarns.points);
+  Real lowest = 0;
+  for (const Vec3f& p : yarns.points) {
+    lowest = std::min(lowest, static_cast<Real>(p.z));
+    // A yarn's centre line is at most its crimp off the middle of the cloth.
+    EXPECT_LT(nearest_on(surface, Vec3(p)).distance, 0.51 * textile.fabric->network.thickness);
+  }
+  EXPECT_LT(lowest, -0.3e-3);
 }
 
 }  // namespace
