@@ -44,6 +44,22 @@ TEST(Controls, ValuesAndRangesAreInTheShownUnit) {
   EXPECT_EQ(find("textiles[0].contact_angle").effect, Effect::next_step);
 }
 
+TEST(Controls, WhatOneTurnsFirstTakesEffectAtTheNextStep) {
+  std::set<std::string> described;
+  for (const ParameterRow& row : parameter_rows<Scene>()) described.insert(row.path);
+  for (std::string path :
+       {"textiles[].contact_angle", "textiles[].warp.fibre", "textiles[].weft.fibre", "air.humidity", "air.temperature",
+        "liquid.kind.surface_tension", "liquid.kind.viscosity", "textiles[].wetting.network.crossing_factor",
+        "textiles[].wetting.network.evaporation", "gravity", "liquid.droppers[].volume", "liquid.droppers[].interval",
+        "liquid.droppers[].centre", "liquid.pipes[].particle_rate", "textiles[].wetting.cells.absorb",
+        "textiles[].wetting.cells.leak", "textiles[].wetting.cells.bounce", "textiles[].sheet.soft.cloth.hand.stretch_weft",
+        "textiles[].sheet.soft.cloth.air.wind", "solids[].contact_angle"}) {
+    EXPECT_TRUE(described.contains(path)) << path;
+    for (std::size_t at; (at = path.find("[]")) != std::string::npos;) path.replace(at, 2, "[0]");
+    EXPECT_EQ(effect_of(path), Effect::next_step) << path;
+  }
+}
+
 TEST(Controls, EveryOneThatIsLiveCanBeSetToItsOwnValue) {
   const Library library = read_library({IMBIBE_SOURCE_DIR});
   Scene s = scene();

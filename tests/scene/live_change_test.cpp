@@ -99,6 +99,49 @@ TEST(LiveChange, AirGravityAndLiquidPropertiesChange) {
   EXPECT_DOUBLE_EQ(r.world.textiles[0].model->liquid.surface_tension, 0.03);
 }
 
+// A soft cloth that hangs by its corners, with a drop on it: of cells, or of a network of yarns.
+std::string soft_scene(bool cells) {
+  return std::string("version: 1\nduration: 1 s\n"
+                     "liquid:\n  particle_mass: 0.5 mg\n"
+                     "  drops: [{centre: [0 mm, 0 mm, 2.6 mm], volume: 15 uL, velocity: [0, 0, -0.3 m/s]}]\n"
+                     "  droppers: [{centre: [3 mm, 0 mm, 6 mm], volume: 2 uL, interval: 20 ms, count: 100, start: 1 ms}]\n"
+                     "textiles:\n  - name: cloth\n    size: [16 mm, 16 mm]\n"
+                     "    sheet: {soft: {columns: 5, rows: 5, preset: jersey, pins: [{corner: bottom_left}, "
+                     "{corner: bottom_right}, {corner: top_left}, {corner: top_right}]}}\n") +
+         (cells ? "    areal_mass: 150 g/m2\n    wetting: {cells: {resistance: 100}}\n"
+                : "    warp: {fibre: cotton, diameter: 0.4 mm, density: 10 /cm}\n"
+                  "    weft: {fibre: cotton, diameter: 0.4 mm, density: 10 /cm}\n    wetting: network\n");
+}
+
+const SoftSheet& soft_sheet(const World& world) {
+  return world.cell_cloths.empty() ? world.textiles[0].cloth->soft : world.cell_cloths[0].soft;
+}
+
+TEST(LiveChange, SoftClothWithLiquidInItGoesOnWithOtherWindStiffnessAndSwitches) {
+  for (const bool cells : {true, false}) {
+    SCOPED_TRACE(cells ? "cells" : "network");
+    Running r{read_scene_text(soft_scene(cells), "soft"), {}};
+    r.world = build_world(r.scene, library());
+    run_to(r.world, 30e-3);
+    const MassBalance before = mass_balance(r.world);
+    EXPECT_GT(before.cell + before.yarn + before.pore, 1e-7) << "the cloth is to hold some liquid";
+    const std::vector<Vec3> place = soft_sheet(r.world).sheet.position;
+    std::vector<std::string> changes{"textiles[0].sheet.soft.cloth.air.wind=[3 m/s, 0 m/s, 0 m/s]",
+                                     "textiles[0].sheet.soft.cloth.hand.stretch_weft=2000 N/m",
+                                     "liquid.droppers[0].volume=3 uL"};
+    if (cells) changes.push_back("textiles[0].wetting.cells.absorb=false");
+    apply_change(r.scene, r.world, library(), changes);
+    const MassBalance after = mass_balance(r.world);
+    EXPECT_EQ(after.cell, before.cell);
+    EXPECT_EQ(after.yarn, before.yarn);
+    EXPECT_EQ(after.free, before.free);
+    for (std::size_t i = 0; i < place.size(); ++i) EXPECT_EQ(soft_sheet(r.world).sheet.position[i].z, place[i].z) << i;
+    EXPECT_EQ(soft_sheet(r.world).cloth.air.wind.x, 3);
+    run_to(r.world, 40e-3);
+    EXPECT_LT(mass_balance(r.world).error(), 1e-10);
+  }
+}
+
 TEST(LiveChange, AddedDropFalls) {
   const auto drop = "liquid.drops[1]={centre: [-3 mm, 2 mm, 3 mm], volume: 0.5 uL, start: 5 ms}";
   const Running with = run_with({{.step = 20, .assignments = {drop}}}), without = run_with({});

@@ -8,6 +8,7 @@ const THREAD = 1.2;  // mm: repeat of the drawn weave, coarser than any real one
 export class Cloth {
   readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshPhysicalMaterial>;
   readonly saturation: Uint8Array;
+  moved = false;
 
   constructor(readonly info: ClothInfo, points: Points, triangles: Uint32Array, places: Float32Array, look: YarnLook) {
     this.saturation = new Uint8Array(info.nodes);

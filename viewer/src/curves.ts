@@ -63,7 +63,11 @@ export class Curves {
       chart.plot = new uPlot(this.options(chart, swatches.length, width, height), [[]], chart.element);
       chart.signature = signature;
     }
-    if (chart.plot.width !== width || chart.plot.height !== height) chart.plot.setSize({ width, height });
+    // A title with the names of many curves takes a third line on a narrow page.
+    const title = chart.plot.root.querySelector<HTMLElement>('.u-title'), wrap = chart.plot.root.querySelector<HTMLElement>('.u-wrap')!;
+    const more = Math.max(0, (title?.offsetHeight ?? 0) - 34);
+    wrap.style.top = `${16 + more}px`;
+    if (chart.plot.width !== width || chart.plot.height !== height - more) chart.plot.setSize({ width, height: height - more });
     const tables = swatches.map((swatch) => {
       const x = swatch.series.column('time_s').map((t) => (chart.x === 'root' ? Math.sqrt(Math.max(t, 0)) : t));
       const ys = curves.map((curve) => {

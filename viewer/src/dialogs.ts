@@ -17,10 +17,11 @@ export function galleryDialog(scenes: { id: string; title: string }[], open: (id
   const order = Object.keys(names), rank = (folder: string) => (order.indexOf(folder) + order.length + 1) % (order.length + 1);
   const folders = [...new Set(scenes.map((s) => s.id.split('/')[0] ?? ''))].sort((a, b) => rank(a) - rank(b));
   const dialog = show(`<h2>Scenes to start from</h2><div class="gallery">` + folders.map((folder) =>
-    `<h3>${escape(names[folder] ?? folder)}</h3><div>` + scenes.filter((s) => s.id.startsWith(`${folder}/`)).map((s) =>
+    `<h3>${escape(names[folder] ?? folder)}</h3><div>` + scenes.filter((s) => s.id.startsWith(`${folder}/`)).sort((a, b) => (folder === 'quickstart' ? a.title.localeCompare(b.title) : 0)).map((s) =>
       `<button value="${escape(s.id)}"><b>${escape((s.id.split('/')[1] ?? s.id).replaceAll('_', ' '))}</b><span>${escape(s.title)}</span></button>`).join('') + '</div>').join('') +
     `</div><footer><label class="file">Open a .wif draft or scene file<input type="file" accept=".wif,.yaml,.yml,.json" /></label><button value="">Close</button></footer>`);
   dialog.onclose = () => { if (dialog.returnValue) open(dialog.returnValue); dialog.returnValue = ''; };
+  dialog.querySelector<HTMLButtonElement>('.gallery button')?.focus();
   dialog.querySelector('input')!.onchange = (e) => {
     const file = (e.target as HTMLInputElement).files?.[0];
     if (file) openFile(file);
@@ -30,9 +31,9 @@ export function galleryDialog(scenes: { id: string; title: string }[], open: (id
 
 // The second swatch: the scene with other fibres or another weave.
 export function compareDialog(rows: ControlRow[], begin: (assignments: string[]) => void): void {
-  const wanted = rows.filter((r) => /^textiles\[0\]\.(weave|warp\.fibre|weft\.fibre|contact_angle)$/.test(r.path));
+  const wanted = rows.filter((r) => /^textiles\[0\]\.(weave|warp\.fibre|weft\.fibre|contact_angle|sheet\.soft\.preset|wetting\.cells\.(absorption_factor|capacity_ratio))$/.test(r.path));
   const dialog = show(`<h2>Compare with a second swatch</h2><p>The same scene and the same drops; what is different on the right:</p><div class="fields">` +
-    wanted.map((r) => `<label><span>${escape(r.path.replace('textiles[0].', '').replaceAll('_', ' '))}${r.unit ? ` (${escape(r.unit)})` : ''}</span>` +
+    wanted.map((r) => `<label><span>${escape(r.path.replace('textiles[0].', '').replaceAll(/[_.]/g, ' '))}${r.unit ? ` (${escape(r.unit)})` : ''}</span>` +
       (r.choices ? `<select name="${escape(r.path)}">${r.choices.map((c) => `<option${c === (r.text ?? '').replaceAll('"', '') ? ' selected' : ''}>${escape(c)}</option>`).join('')}</select>`
         : `<input name="${escape(r.path)}" placeholder="as on the left" value="" list="list-${escape(r.path)}" />`) + '</label>').join('') +
     `</div><p class="hint">weave: plain, twill 2/1, satin 5/2, basket 2/2, or rows like 10 01</p><footer><button value="">Cancel</button><button value="go" class="primary">Begin both</button></footer>`);

@@ -28,7 +28,7 @@ void main() {
 
 const COMPOSE = `
 uniform sampler2D uScene; uniform sampler2D uSceneDepth; uniform sampler2D uDepth; uniform sampler2D uThickness;
-uniform vec2 uTexel; uniform mat4 uProjection; uniform mat4 uInverse; uniform mat4 uToWorld; uniform float uDark;
+uniform vec2 uTexel; uniform mat4 uProjection; uniform mat4 uInverse; uniform mat4 uToWorld; uniform float uDark; uniform float uRadius;
 varying vec2 vUv;
 vec3 at(vec2 uv, float d) {
   vec2 ndc = 2.0 * uv - 1.0;
@@ -70,7 +70,7 @@ void main() {
       vec3 colour = mix(through, sky(mirrored), clamp(fresnel, 0.0, 0.85));
       float rim = smoothstep(0.0, 0.35, facing);
       // The lamp's own reflection is a few pixels wide on a drop: drawn wider, so that its shape is read.
-      float lit = 0.5 + 0.5 * dot(mat3(uToWorld) * n, LAMP), shine = pow(max(0.0, dot(mirrored, LAMP)), 70.0);
+      float lit = 0.5 + 0.5 * dot(mat3(uToWorld) * n, LAMP), shine = rim * smoothstep(0.3, 1.6, thick / uRadius) * pow(max(0.0, dot(mirrored, LAMP)), 70.0);
       gl_FragColor = vec4(colour * mix(0.55, 1.0, rim) * mix(0.72, 1.08, lit) + 0.6 * shine * mix(1.0, 0.6, uDark), 1.0);
     }
   }
@@ -98,7 +98,7 @@ export class LiquidSurface {
     this.compose = new THREE.ShaderMaterial({ vertexShader: QUAD_VERTEX, fragmentShader: COMPOSE, depthTest: false, depthWrite: false,
       uniforms: { uScene: { value: this.colour.texture }, uSceneDepth: { value: this.colour.depthTexture }, uDepth: { value: null },
         uThickness: { value: this.thickness.texture }, uTexel: { value: new THREE.Vector2() }, uProjection: { value: new THREE.Matrix4() },
-        uInverse: { value: new THREE.Matrix4() }, uToWorld: { value: new THREE.Matrix4() }, uDark: { value: 0 } } });
+        uInverse: { value: new THREE.Matrix4() }, uToWorld: { value: new THREE.Matrix4() }, uDark: { value: 0 }, uRadius: { value: 1 } } });
     this.quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.smooth);
     this.quad.frustumCulled = false;
     this.quadScene.add(this.quad);
@@ -149,6 +149,7 @@ export class LiquidSurface {
     (c['uInverse']!.value as THREE.Matrix4).copy(camera.projectionMatrixInverse);
     (c['uToWorld']!.value as THREE.Matrix4).copy(camera.matrixWorld);
     c['uDark']!.value = dark ? 1 : 0;
+    c['uRadius']!.value = uniforms.uRadius.value;
     this.quad.material = this.compose;
     renderer.render(this.quadScene, this.flat);
   }

@@ -96,6 +96,11 @@ function onMessage(message: ServerMessage): void {
     case 'speed': byId<HTMLSelectElement>('speed').value = String(message.limit); return;
     case 'swatches': return setSwatches(message.count);
     case 'inspect': return onInspect(message);
+    case 'history': {
+      const swatch = swatches[message.swatch];
+      if (swatch?.generation === message.generation) swatch.series.load(message.rows), curves.rebuild();
+      return;
+    }
     case 'done': return answered(message);
     case 'scene_text': return download('scene.yaml', new Blob([message.text], { type: 'text/yaml' }));
   }
@@ -182,7 +187,8 @@ function showTitle(): void {
     swatches.forEach((s, i) => {
       const t = s.textiles[0], label = document.createElement('div');
       const row = (end: string) => rows[i]?.find((r) => r.path === `textiles[0].${end}`)?.text?.replaceAll('"', '') ?? '';
-      label.textContent = t ? `${i === 0 ? 'left' : 'right'}: ${row('weave')}, ${row('warp.fibre')} × ${row('weft.fibre')}${row('contact_angle') ? `, ${row('contact_angle')}` : ''}` : '';
+      label.textContent = t ? `${i === 0 ? 'left' : 'right'}: ${[row('weave'), `${row('warp.fibre')} × ${row('weft.fibre')}`, row('contact_angle')].filter(Boolean).join(', ')}`
+        : `${i === 0 ? 'left' : 'right'}: ${[row('sheet.soft.preset'), row('contact_angle'), row('wetting.cells.absorption_factor')].filter(Boolean).join(', ')}`;
       byId('labels').append(label);
     });
 }

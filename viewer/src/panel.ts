@@ -46,6 +46,13 @@ export class Panel {
       words.every((word) => `${row.path} ${label(row.path)} ${row.help}`.toLowerCase().includes(word)));
   }
 
+  // What one changes most comes first: the cloth, and in each folder its own values before the folders in it.
+  private ordered(): ControlRow[] {
+    const groups = ['textiles', 'liquid', 'air', 'gravity', 'solids', 'duration'];
+    const rank = (row: ControlRow) => (groups.indexOf(row.path.replace(/[.[].*/, '')) + groups.length + 1) % (groups.length + 1);
+    return this.visible().sort((a, b) => rank(a) - rank(b) || a.path.split('.').length - b.path.split('.').length);
+  }
+
   private build(): void {
     const scroll = this.element.scrollTop;
     this.gui?.destroy();
@@ -69,7 +76,7 @@ export class Panel {
       folders.set(path, made);
       return made;
     };
-    for (const row of this.visible()) {
+    for (const row of this.ordered()) {
       const dot = row.path.lastIndexOf('.');
       this.add(folder(dot < 0 ? '' : row.path.slice(0, dot)), row);
     }

@@ -95,6 +95,7 @@ export type ServerMessage =
   | { type: 'speed'; swatch: number; limit: number }
   | { type: 'swatches'; count: number }
   | { type: 'scene_text'; swatch: number; text: string }
+  | { type: 'history'; swatch: number; generation: number; rows: (number | null)[][] }
   | { type: 'done'; swatch: number; ask: number; arrived: number; step: number; time: number };
 
 export interface Points { origin: Float32Array; step: Float32Array; xyz: Uint16Array }

@@ -71,7 +71,7 @@ export class Swatch {
       if (!yarns) continue;
       if (section.kind === 'saturations') yarns.saturation.set(section.values), yarns.saturationChanged();
       else if (section.kind === 'changes') applyChanges(yarns.saturation, section.bytes, section.count), yarns.saturationChanged();
-      else if (section.kind === 'yarns') yarns.setPoints(section.points), this.shadowsStale = true;
+      else if (section.kind === 'yarns') yarns.setPoints(section.points), this.shadowsStale = true, yarns.moved = true;
     }
   }
 

@@ -282,7 +282,8 @@ export class View {
     const swatch = this.swatches()[index];
     if (!swatch) return null;
     let best: THREE.Vector3 | null = null;
-    for (const info of swatch.textiles) {
+    for (const [i, info] of swatch.textiles.entries()) {
+      if (swatch.yarns[i]?.moved) continue;
       const n = new THREE.Vector3(...info.n), u = new THREE.Vector3(...info.u), v = new THREE.Vector3(...info.v);
       const side = Math.sign(ray.origin.dot(n) - 1000 * new THREE.Vector3(...info.origin).dot(n)) || 1;
       const face = new THREE.Vector3(...info.origin).addScaledVector(n, side * 0.5 * info.thickness).multiplyScalar(1000);
@@ -292,6 +293,7 @@ export class View {
       if (Math.abs(d.dot(u)) > 500 * info.size[0] || Math.abs(d.dot(v)) > 500 * info.size[1]) continue;
       if (!best || hit.distanceTo(ray.origin) < best.distanceTo(ray.origin)) best = hit;
     }
+    if (!best && swatch.yarns.some((yarns) => yarns.moved)) best = this.pick(x, y)?.place ?? null;
     const cloth = this.hitCloth(swatch, ray);
     if (cloth && (!best || cloth.distance < best.distanceTo(ray.origin))) best = cloth.point;
     if (!best && swatch.textiles.length + swatch.cloths.length === 0) best = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());

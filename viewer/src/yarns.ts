@@ -39,6 +39,7 @@ void place(out vec3 position_, out vec3 normal_) {
   vec3 p = pointAt(i);
   vec3 t = normalize(pointAt(min(i + 1.0, aPiece.z)) - pointAt(max(i - 1.0, aPiece.y)));
   vec3 side = mix(uAcross0, uAcross1, aYarn.w);
+  if (abs(dot(side, t)) > 0.9) side = uNormal;  // a sheet that hangs across
   vec3 up = normalize(cross(t, side)); side = cross(up, t);
   normal_ = cos(aPlace.y) * side + sin(aPlace.y) * up;
   position_ = p + aPiece.w * normal_;
@@ -98,6 +99,7 @@ export class Yarns {
     if (this.pointTexture) this.pointTexture.needsUpdate = true;
   }
 
+  moved = false;  // of a soft sheet: no longer where the scene message puts the cloth
   saturationChanged(): void { this.saturationTexture.needsUpdate = true; }
 
   private pieces(sides: number): THREE.InstancedBufferGeometry {

@@ -10,6 +10,7 @@ import { ask, command, openBrowser, openPage, root, startLive, until } from './b
 import { Watcher, processorSeconds } from './watcher.mjs';
 
 const small = 'viewer/test/small.yaml', smallText = readFileSync(join(root, small), 'utf8');
+const clothText = readFileSync(join(root, 'viewer/test/cloth.yaml'), 'utf8');
 const environment = { ...process.env, IMBIBE_DATA_DIR: root };
 let browser, server, page;
 
@@ -46,9 +47,10 @@ async function begin(p = page, scene = smallText) {
 }
 
 async function set(p, ...assign) {
-  const seen = await p.evaluate(() => window.imbibe.counters.changes);
-  await ask(p, { type: 'set', swatch: 0, assign });
-  await until(p, (n) => window.imbibe.counters.changes > n, seen);
+  const seen = await p.evaluate(() => window.imbibe.counters);
+  await ask(p, { type: 'set', swatch: 0, assign });  // answered after the change, or the error, was told
+  const now = await p.evaluate(() => window.imbibe.counters);
+  assert.ok(now.changes > seen.changes && now.errors === seen.errors, JSON.stringify(now.problems));
 }
 
 async function refused(p, act, pattern) {
@@ -178,6 +180,14 @@ test('a click on the cloth drops a drop there', async () => {
   assert.ok(Math.hypot(x - 3e-3, y - 3e-3) < 0.4e-3, made);  // a pixel is 0.03 mm; the face lies above the middle
 });
 
+test('liquid that leaves the scene is a warning', async () => {
+  await begin(page, smallText + 'domain: {lower: [-12 mm, -12 mm, -3 mm], upper: [12 mm, 12 mm, 12 mm]}\n');
+  assert.equal(await page.locator('#status .warning').count(), 0);
+  await ask(page, { type: 'drop', swatch: 0, at: [8e-3, 0, 0], volume: 0.5e-9, speed: 0.3 });
+  await ask(page, { type: 'run', swatch: 0 });
+  await until(page, () => /left the domain/.test(document.querySelector('#status .warning')?.textContent ?? ''));
+});
+
 test('a picked yarn shows what it holds, even under the line that tells of a change', async () => {
   await begin();
   await page.keyboard.press('t');
@@ -284,6 +294,47 @@ test('curves and scene are saved as files, the scene as changed', async () => {
   assert.match(scene.bytes.toString(), /contact_angle: "?70 deg/);
 });
 
+test('a soft cloth moves and darkens; pipe, wind, switches and stiffness change while it runs; its cells are picked', async () => {
+  await begin(page, clothText);
+  const nodes = () => page.evaluate(() => [...window.imbibe.swatches[0].cloths[0].points]);
+  const start = await nodes();
+  const paths = await page.evaluate(() => [...document.querySelectorAll('[data-path]')].map((e) => e.dataset.path));
+  for (const path of ['liquid.pipes[0].particle_rate', 'textiles[0].wetting.cells.absorb', 'textiles[0].wetting.cells.leak', 'textiles[0].wetting.cells.bounce',
+    'textiles[0].sheet.soft.cloth.air.wind', 'textiles[0].sheet.soft.cloth.hand.stretch_weft'])
+    assert.ok(paths.includes(path), `${path} is not among ${paths.filter((p) => /pipe|cells|soft/.test(p))}`);
+  await send(page, { type: 'run', swatch: 0 });
+  await reaches(page, 'cell_kg', 2e-6);
+  await pause(page);
+  const now = await nodes();
+  assert.ok(Math.max(...now.map((x, i) => Math.abs(x - start[i]))) > 0.1, 'it sags');
+  assert.ok(await page.evaluate(() => window.imbibe.swatches[0].cloths[0].saturation.some((s) => s > 10)), 'it is wet');
+  const supplied = await value(page, 'supplied_kg');
+  await set(page, 'liquid.pipes[0].particle_rate=2000', 'textiles[0].wetting.cells.absorb=false', 'textiles[0].sheet.soft.cloth.air.wind=[3 m/s, 0 m/s, 0 m/s]');
+  const held = await value(page, 'cell_kg');
+  await send(page, { type: 'run', swatch: 0 });
+  await reaches(page, 'supplied_kg', supplied + 2e-5);
+  await pause(page);
+  assert.ok((await value(page, 'cell_kg')) <= held, 'it takes up no more');
+  assert.ok((await value(page, 'ledger_error')) < 1e-10);
+  await page.keyboard.press('i');
+  const place = await page.evaluate(() => [...window.imbibe.swatches[0].cloths[0].points].slice(3 * 20, 3 * 21).map((x) => x / 1000));
+  await page.mouse.click(...await pixel(page, place));
+  await page.waitForSelector('#pick:not([hidden])');
+  assert.match(await text(page, '#pick'), /Cell \d+ of cloth/);
+});
+
+test('the yarns of a network on a soft sheet move', async () => {
+  await begin();
+  const generation = await page.evaluate(() => window.imbibe.swatches[0].generation);
+  await ask(page, { type: 'open', swatch: 0, gallery: 'cloth/network_on_hammock' });
+  await until(page, (g) => window.imbibe.swatches[0].generation > g && window.imbibe.swatches[0].frames > 0, generation);
+  const heights = () => page.evaluate(() => { const p = window.imbibe.swatches[0].yarns[0].points; return [0, 1, 2, 3, 4, 5].map((i) => p[4 * 500 * i + 2]); });
+  const before_ = await heights();
+  await steps(page, 40);
+  const after_ = await heights();
+  assert.ok(after_.some((z, i) => Math.abs(z - before_[i]) > 1e-3), `${before_} mm, then ${after_} mm`);
+});
+
 test('1000 malformed messages are answered, counted and survived', async () => {
   await begin();
   const watcher = await Watcher.open(server.url);
@@ -306,6 +357,10 @@ test('two viewers watch, one holds the controls and may hand them over', async (
   await until(page, () => window.imbibe.holder !== window.imbibe.hello.viewer);
   const { step } = await ask(second, { type: 'step', swatch: 0, steps: 5 });
   await reaches(page, 'steps', step + 5);
+  // One that comes late has the curves from the start.
+  const third = await Watcher.open(server.url);
+  await third.until(() => third.count('history') === 1);
+  third.close();
   assert.deepEqual(second.problems, []);
   await second.close();
   await until(page, () => window.imbibe.holder === window.imbibe.hello.viewer);

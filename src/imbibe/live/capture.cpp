@@ -36,6 +36,14 @@ const std::vector<std::string>& live_columns() {
   return names;
 }
 
+QuantisedPoints thinned_points(const YarnNetwork& network, std::span<const Vec3> all) {
+  const auto stride = static_cast<Index>(std::max(1, network.points_per_segment / shown_steps_per_segment));
+  std::vector<Vec3f> points;
+  for (std::size_t y = 0; y + 1 < network.yarn_first_point.size(); ++y)
+    for (Index i = network.yarn_first_point[y]; i < network.yarn_first_point[y + 1]; i += stride) points.emplace_back(all[i]);
+  return quantise(points.size(), [&](std::size_t i) { return points[i]; });
+}
+
 QuantisedPoints cloth_points(const CellCloth& cloth) {
   const auto& nodes = cloth.soft.sheet.position;
   return quantise(nodes.size(), [&](std::size_t i) { return nodes[i]; });
@@ -50,11 +58,10 @@ std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more) {
 Real wet_height(const World& world, const std::vector<std::vector<Real>>& saturations, Real wet_saturation) {
   Real low = unlimited, high = -unlimited;
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
-    const Textile& textile = world.textiles[t];
-    const YarnNetwork& network = textile.fabric->network;
+    const std::vector<Vec3> places = nodes_in_world(world.textiles[t]);
     for (std::size_t node = 0; node < saturations[t].size(); ++node) {
       if (!(saturations[t][node] > wet_saturation)) continue;
-      const Real z = textile.placement.to_world(network.node_centre(node)).z;
+      const Real z = places[node].z;
       low = std::min(low, z), high = std::max(high, z);
     }
   }
@@ -62,6 +69,17 @@ Real wet_height(const World& world, const std::vector<std::vector<Real>>& satura
 }
 
 namespace {
+
+int shown_stride(const YarnNetwork& network) { return std::max(1, network.points_per_segment / shown_steps_per_segment); }
+
+QuantisedPoints shown_points(const Textile& textile) { return thinned_points(textile.fabric->network, points_in_world(textile)); }
+
+// Where the yarns of a soft sheet are; null: they do not move.
+std::shared_ptr<const QuantisedPoints> moved_yarns(const Textile& textile, const std::shared_ptr<const QuantisedPoints>& before) {
+  if (!textile.cloth) return nullptr;
+  if (before && !textile.cloth->soft.moves()) return before;
+  return std::make_shared<const QuantisedPoints>(shown_points(textile));
+}
 
 // What a cloth of cells holds and where its nodes are; what has not changed is shared with the snapshot before.
 void add_cloth(const CellCloth& cloth, std::size_t owner, const Snapshot* before, Snapshot& s) {
@@ -84,8 +102,8 @@ Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>&
   s.particles = still ? before->particles
                       : std::make_shared<const QuantisedPoints>(
                             quantise(positions.size(), [&](std::size_t i) { return positions[i]; }));
-  s.yarns.resize(world.textiles.size());
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    s.yarns.push_back(moved_yarns(world.textiles[t], before ? before->yarns[t] : nullptr));
     auto bytes = std::make_shared<Saturations>(saturations[t].size());
     std::transform(saturations[t].begin(), saturations[t].end(), bytes->begin(), saturation_byte);
     const bool same = before && t < before->saturations.size() && *before->saturations[t] == *bytes;
@@ -119,8 +137,6 @@ Json solid_json(const SolidBody& solid) {
   return json;
 }
 
-int shown_stride(const YarnNetwork& network) { return std::max(1, network.points_per_segment / shown_steps_per_segment); }
-
 Json textile_json(const Textile& textile) {
   const YarnNetwork& network = textile.fabric->network;
   const auto stride = static_cast<Index>(shown_stride(network));
@@ -149,16 +165,6 @@ Json textile_json(const Textile& textile) {
           {"yarn_family", family},
           {"yarn_segments", segments},
           {"yarn_points", points}};
-}
-
-QuantisedPoints shown_points(const Textile& textile) {
-  const YarnNetwork& network = textile.fabric->network;
-  const auto stride = static_cast<Index>(shown_stride(network));
-  std::vector<Vec3f> points;
-  for (std::size_t y = 0; y + 1 < network.yarn_first_point.size(); ++y)
-    for (Index i = network.yarn_first_point[y]; i < network.yarn_first_point[y + 1]; i += stride)
-      points.emplace_back(textile.placement.to_world(network.points[i]));
-  return quantise(points.size(), [&](std::size_t i) { return points[i]; });
 }
 
 // `mesh` null: a plain shape, described in the scene message.
@@ -196,10 +202,9 @@ Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World
   for (const Textile& textile : world.textiles) {
     textiles.push_back(textile_json(textile));
     g.yarns.push_back(shown_points(textile));
-    const YarnNetwork& network = textile.fabric->network;
-    g.pores.push_back(quantise(network.pores(), [&](std::size_t i) {
-      return textile.placement.to_world(network.pore_centre[i]);
-    }));
+    const std::vector<Vec3> nodes = nodes_in_world(textile);
+    const std::size_t segments = textile.fabric->network.segments();
+    g.pores.push_back(quantise(nodes.size() - segments, [&](std::size_t i) { return nodes[segments + i]; }));
   }
   for (const CellCloth& cloth : world.cell_cloths) {
     cloths.push_back(cloth_json(cloth));
@@ -257,7 +262,7 @@ std::string inspect(const World& world, std::size_t textile_index, std::size_t n
   const WettingModel& model = *textile.model;
   const YarnNetwork& network = textile.fabric->network;
   if (node >= model.nodes()) return "";
-  const Vec3 place = textile.placement.to_world(network.node_centre(node));
+  const Vec3 place = nodes_in_world(textile)[node];
   Json json{{"type", "inspect"},
             {"textile", textile_index},
             {"node", node},

@@ -2,6 +2,7 @@
 // of one node for picking. Tested with the page, in viewer/test/live.test.mjs.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,20 +31,22 @@ std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more);
 // Vertical extent of all wet nodes, m.
 Real wet_height(const World& world, const std::vector<std::vector<Real>>& saturations, Real wet_saturation);
 
+// Centre lines are thinned to this many steps per half loop; the page draws round curves through them.
+inline constexpr int shown_steps_per_segment = 4;
+
 QuantisedPoints cloth_points(const CellCloth& cloth);
+// Centre lines, thinned to what the page draws, of all points of a textile's yarns in the world.
+QuantisedPoints thinned_points(const YarnNetwork& network, std::span<const Vec3> all);
 
 // `before`: the snapshot made last; what has not changed is shared with it. Positions of resting liquid are not looked
 // at again.
 Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>& saturations, const Snapshot* before);
 
-// Centre lines are thinned to this many steps per half loop; the page draws round curves through them.
-inline constexpr int shown_steps_per_segment = 4;
-
 struct SceneTexts {
   int swatch = 0;
   bool replay = false;
   std::string folder;          // where the run is written, for the page to name
-  std::string history_json;    // rows so far, "[]" when none
+  std::string history_json = "[]";  // rows of a finished run; those of a running one follow (Feed::history_json)
 };
 Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World& world, const Library& library,
                        const SceneTexts& texts);

@@ -62,6 +62,8 @@ class Feed {
 
   virtual void post(Command command) = 0;       // any thread
   virtual std::string scene_text() const = 0;   // the scene as it is now, any thread; "" when there is none
+  // The rows so far of the world that is shown, for a page that comes late; any thread. "[]": in the scene message, or none.
+  virtual std::string history_json() const { return "[]"; }
 
   Outlet outlet;
 };

@@ -113,9 +113,15 @@ void Replay::show(std::size_t number) {
         std::transform(values->begin(), values->end(), bytes->begin() + static_cast<std::ptrdiff_t>(network.segments()),
                        saturation_byte);
     }
-    first_point += network.points.size();
     s->saturations.push_back(std::move(bytes));
-    s->yarns.push_back(nullptr);
+    std::shared_ptr<const QuantisedPoints> moved;
+    if (world_.textiles[t].cloth) {
+      const auto begin = frame.yarns.points.begin() + static_cast<std::ptrdiff_t>(first_point);
+      const std::vector<Vec3> points(begin, begin + static_cast<std::ptrdiff_t>(network.points.size()));
+      moved = std::make_shared<const QuantisedPoints>(thinned_points(network, points));
+    }
+    s->yarns.push_back(std::move(moved));
+    first_point += network.points.size();
   }
   for (const DrawnCloth& cloth : frame.cloths) {
     auto bytes = std::make_shared<Saturations>(cloth.saturation.size());

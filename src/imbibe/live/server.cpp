@@ -185,6 +185,8 @@ void Server::send_scenes(Connection& c) {
     c.encoders[i] = FrameEncoder(static_cast<std::uint8_t>(i));
     send(c, Opcode::text, geometry->scene_json);
     send(c, Opcode::binary, encode_geometry(static_cast<std::uint8_t>(i), *geometry));
+    if (const std::string rows = feeds_[i]->history_json(); rows != "[]")
+      send(c, Opcode::text, fmt::format(R"({{"type":"history","swatch":{},"generation":{},"rows":{}}})", i, geometry->generation, rows));
   }
 }
 

@@ -70,6 +70,15 @@ std::string Session::scene_text() const {
   return scene_text_;
 }
 
+std::string Session::history_json() const {
+  History rows;
+  {
+    const std::scoped_lock hold(lock_);
+    rows = history_;
+  }
+  return rows.json();
+}
+
 void Session::begin() {
   ++generation_;
   start_scene_ = scene_;
@@ -77,7 +86,6 @@ void Session::begin() {
   steps_left_ = 0;
   report_ = {};
   last_ = nullptr;
-  history_.clear();
   emit_due(world_);  // as run() does: drops that hang there at the start are seen before the first step
   recorder_.reset();
   recorder_.emplace(setup_.record, scene_, world_);
@@ -89,9 +97,10 @@ void Session::begin() {
   {
     const std::scoped_lock hold(lock_);
     scene_text_ = write_scene(scene_);
+    history_.clear();
   }
   outlet.publish(std::make_shared<const Geometry>(take_geometry(
-      generation_, scene_, world_, *setup_.library, {setup_.swatch, false, recorder_->folder().string(), "[]"})));
+      generation_, scene_, world_, *setup_.library, {setup_.swatch, false, recorder_->folder().string()})));
   publish();
 }
 
@@ -166,7 +175,10 @@ void Session::publish() {
   more.step_bound = step_bound_index(report_.step_bound);
   more.converged = report_.converged;
   snapshot->values = live_values(series_row(world_, report_, scene_.measures), more);
-  history_.add(snapshot->values);
+  {
+    const std::scoped_lock hold(lock_);
+    history_.add(snapshot->values);
+  }
   last_ = std::move(snapshot);
   outlet.publish(last_);
   // Steps end when they end: due times that follow each other, not the last snapshot, keep the rate.

@@ -41,6 +41,7 @@ class Session final : public Feed {
 
   void post(Command command) override;
   std::string scene_text() const override;
+  std::string history_json() const override;
   // Another swatch that this one keeps step with (compare): neither runs ahead of the other.
   void keep_pace_with(std::shared_ptr<const std::atomic<Real>> other);
   std::shared_ptr<const std::atomic<Real>> time_reached() const { return time_reached_; }
@@ -75,7 +76,6 @@ class Session final : public Feed {
   World world_;
   StepReport report_;
   std::optional<Recorder> recorder_;
-  History history_;
   std::shared_ptr<const Snapshot> last_;
   std::uint32_t generation_ = 0, number_ = 0;
 
@@ -98,6 +98,7 @@ class Session final : public Feed {
   bool quit_asked_ = false;
   std::shared_ptr<const std::atomic<Real>> other_time_;
   std::string scene_text_;
+  History history_;
 
   std::thread thread_;  // last: it uses all of the above
 };

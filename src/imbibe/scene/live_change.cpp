@@ -86,7 +86,9 @@ struct Carry {
     const void* old = find(name);
     if (!old) return;
     const auto& values = *static_cast<const std::vector<T>*>(old);
-    if (path != "liquid/" && values.size() != x.size()) misfits.push_back(path + name);
+    // As many as there happen to be: particles, and the parcels of a cloth of cells.
+    const bool any_number = path == "liquid/" || std::string_view(name).starts_with("parcel_");
+    if (!any_number && values.size() != x.size()) misfits.push_back(path + name);
     x = values;
   }
 };
@@ -135,6 +137,10 @@ World carried_world(const Scene& before, const World& running, const Scene& afte
                                  carry.misfits.empty() ? "number of textiles" : carry.misfits.front()));
   for (Textile& textile : next.textiles) expel(textile);
   // Whatever rested may move now, and the next textile steps are short again.
+  const auto wake = [](SoftSheet& soft) { soft.at_rest = false, soft.calm_s = 0; };
+  for (CellCloth& cloth : next.cell_cloths) wake(cloth.soft);
+  for (Textile& textile : next.textiles)
+    if (textile.cloth) wake(textile.cloth->soft);
   next.pace.resting = false;
   next.pace.calm_since = -1;
   next.pace.wetting_interval = Pace{}.wetting_interval;
