@@ -17,8 +17,13 @@ constexpr Vec3 down{0, 0, -9.81};
 
 // A sheet of the network's size, its middle at the origin, its weft along `u` and its warp along `v`.
 Sheet sheet_for(const YarnNetwork& network, const Vec3& u, const Vec3& v, Index nodes = 25) {
-  return make_sheet(GridSheet{.corner = -0.5 * network.size_x * u - 0.5 * network.size_y * v, .along_u = u, .along_v = v,
-                              .width = network.size_x, .height = network.size_y, .columns = nodes, .rows = nodes,
+  return make_sheet(GridSheet{.corner = -0.5 * network.size_x * u - 0.5 * network.size_y * v,
+                              .along_u = u,
+                              .along_v = v,
+                              .width = network.size_x,
+                              .height = network.size_y,
+                              .columns = nodes,
+                              .rows = nodes,
                               .areal_mass = 0.12});
 }
 
@@ -37,7 +42,8 @@ struct Placed {
   Embedding embedding;
   EmbeddingScratch scratch;
   MovingMesh surface;
-  Placed(YarnNetwork n, Sheet s) : network(std::move(n)), sheet(std::move(s)), embedding(build_embedding(sheet, network)) {
+  Placed(YarnNetwork n, Sheet s)
+      : network(std::move(n)), sheet(std::move(s)), embedding(build_embedding(sheet, network)) {
     now();
   }
   void now() {
@@ -58,7 +64,8 @@ YarnNetwork middle_strip(std::size_t count, Real length, const Fibre& fibre) {
 
 Vec3 random_point(const YarnNetwork& n, std::uint64_t i) {
   const RandomCounter id{5, i, 0};
-  return {0.98 * n.size_x * (uniform(id, 0) - 0.5), 0.98 * n.size_y * (uniform(id, 1) - 0.5), 2e-3 * (uniform(id, 2) - 0.5)};
+  return {0.98 * n.size_x * (uniform(id, 0) - 0.5), 0.98 * n.size_y * (uniform(id, 1) - 0.5),
+          2e-3 * (uniform(id, 2) - 0.5)};
 }
 
 TEST(Embedding, AFlatSoftSheetIsWhereItsPlacementSays) {
@@ -122,7 +129,8 @@ TEST(Embedding, AnUprightSoftSheetWicksAsAnUprightFixedOne) {
   }
   Real most = 0;
   for (std::size_t k = 0; k < n.nodes(); ++k) most = std::max(most, std::abs(fixed.liquid_kg[k] - bent.liquid_kg[k]));
-  EXPECT_LT(most, 1e-8 * *std::max_element(fixed.liquid_kg.begin(), fixed.liquid_kg.end()));  // Newton's tolerance, some steps
+  EXPECT_LT(most, 1e-8 * *std::max_element(fixed.liquid_kg.begin(),
+                                           fixed.liquid_kg.end()));  // Newton's tolerance, some steps
 }
 
 TEST(Embedding, WaterInAnArchedClothComesToRestWithThePressureOfItsHeight) {

@@ -24,7 +24,8 @@ struct Wet {
     contents = conditioned_contents(model, {});
     exchange.waiting_kg.assign(n.nodes(), 0);
     SoftSheet soft;
-    soft.sheet = make_sheet(GridSheet{.width = n.size_x, .height = n.size_y, .columns = 11, .rows = 11, .areal_mass = 0.1});
+    soft.sheet =
+        make_sheet(GridSheet{.width = n.size_x, .height = n.size_y, .columns = 11, .rows = 11, .areal_mass = 0.1});
     cloth = make_network_cloth(std::move(soft), n, model, {}, {});
     find_held(cloth.soft, held);
   }

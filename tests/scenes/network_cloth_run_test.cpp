@@ -46,7 +46,9 @@ domain: {lower: [-20 mm, -20 mm, -40 mm], upper: [20 mm, 20 mm, 20 mm]}
   return test::build(read_scene_text(text, file.string(), overrides), file);
 }
 
-const SoftSheet& sheet_of(const World& world) { return world.textiles[0].cloth->soft; }
+const SoftSheet& sheet_of(const World& world) {
+  return world.textiles[0].cloth->soft;
+}
 
 Vec3 momentum_of(const World& world) {
   Vec3 sum = momentum(sheet_of(world).sheet);
@@ -181,11 +183,12 @@ TEST(NetworkClothRun, FilesAndPicturesShowTheYarnsWhereTheClothIs) {
 
 TEST(NetworkClothRun, AWetClothTouchesABallInMorePlacesThanADryOne) {
   const auto on_ball = [](const std::string& yarns) {
-    World world = small_hammock({"liquid.drops=[]", "textiles[0].size=[36 mm, 36 mm]", "textiles[0].centre=[0 mm, 0 mm, 13 mm]",
-                                 "textiles[0].sheet.soft.pins=[]", "textiles[0].sheet.soft.columns=21",
-                                 "textiles[0].sheet.soft.rows=21", "textiles[0].start.yarns=" + yarns,
-                                 "solids=[{name: ball, shape: {kind: sphere, centre: [0 mm, 0 mm, 0 mm], radius: 12 mm}, "
-                                 "contact_angle: 40 deg}]"});
+    World world =
+        small_hammock({"liquid.drops=[]", "textiles[0].size=[36 mm, 36 mm]", "textiles[0].centre=[0 mm, 0 mm, 13 mm]",
+                       "textiles[0].sheet.soft.pins=[]", "textiles[0].sheet.soft.columns=21",
+                       "textiles[0].sheet.soft.rows=21", "textiles[0].start.yarns=" + yarns,
+                       "solids=[{name: ball, shape: {kind: sphere, centre: [0 mm, 0 mm, 0 mm], radius: 12 mm}, "
+                       "contact_angle: 40 deg}]"});
     test::run_until(world, 0.25);
     std::size_t near = 0;
     const Real reach = 12e-3 + 0.5 * sheet_of(world).cloth.hand.thickness + 0.2e-3;  // where bridges hold

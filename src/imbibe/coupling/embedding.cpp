@@ -12,7 +12,9 @@ namespace {
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 constexpr Real most_drying = 0.5;  // of a node's dry mass: fibres never hold so much vapour that more could leave
 
-Vec3 flat_corner(const Sheet& sheet, Index node) { return {sheet.u[node], sheet.v[node], 0}; }
+Vec3 flat_corner(const Sheet& sheet, Index node) {
+  return {sheet.u[node], sheet.v[node], 0};
+}
 
 template <class Of>
 Vec3 mixed(const Sheet& sheet, const SurfacePoint& at, Of&& of) {
@@ -87,7 +89,8 @@ void update(EmbeddingScratch& scratch, const Embedding& embedding, const Sheet& 
   });
 }
 
-// --- ClothPlace -------------------------------------------------------------------------------------------------------
+// --- ClothPlace
+// -------------------------------------------------------------------------------------------------------
 
 Vec3 ClothPlace::bent_normal(const Vec3& p) const {
   return normalized(mixed(*sheet_, surface_point(p), [&](Index i) { return scratch_->normal[i]; }));
@@ -147,10 +150,12 @@ ClothPlace::Frame ClothPlace::frame_near(const Vec3& w) const {
 Vec3 ClothPlace::foot(const Vec3& gravity) const {
   if (flat_) return flat_->origin;
   const auto& x = sheet_->position;
-  return *std::max_element(x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return dot(gravity, a) < dot(gravity, b); });
+  return *std::max_element(x.begin(), x.end(),
+                           [&](const Vec3& a, const Vec3& b) { return dot(gravity, a) < dot(gravity, b); });
 }
 
-// --- what the cloth carries -------------------------------------------------------------------------------------------
+// --- what the cloth carries
+// -------------------------------------------------------------------------------------------
 
 void add_to_sheet(const Embedding& embedding, const Sheet& sheet, std::span<const Real> network_kg,
                   std::vector<Real>& sheet_kg) {
@@ -161,7 +166,8 @@ void add_to_sheet(const Embedding& embedding, const Sheet& sheet, std::span<cons
   }
 }
 
-void join_sheet(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, Real kg, const Vec3& velocity) {
+void join_sheet(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, Real kg,
+                const Vec3& velocity) {
   soft.liquid_impulse += kg * velocity;
   for (std::size_t c = 0; c < 3; ++c) {
     const Index node = soft.sheet.triangles[at.triangle][c];
@@ -171,8 +177,8 @@ void join_sheet(SoftSheet& soft, std::span<const std::uint8_t> held, const Surfa
   }
 }
 
-void leave_sheet(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, Real kg, const Vec3& velocity,
-                 MassLeft& left) {
+void leave_sheet(SoftSheet& soft, std::span<const std::uint8_t> held, const SurfacePoint& at, Real kg,
+                 const Vec3& velocity, MassLeft& left) {
   const Vec3 own = velocity_at(soft.sheet, at);
   left.kg += kg, left.momentum += kg * own;
   soft.liquid_impulse -= kg * velocity;

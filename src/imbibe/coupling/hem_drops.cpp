@@ -29,8 +29,10 @@ EdgePoint edge_near(const YarnNetwork& n, const ClothPlace& place, const Vec3& c
   const bool along_x = 0.5 * n.size_x - std::abs(c.x) < 0.5 * n.size_y - std::abs(c.y);
   Vec3 edge{c.x, c.y, 0}, inside = edge;
   const Real step = 2 * std::max(n.pitch_x, n.pitch_y);
-  if (along_x) edge.x = std::copysign(0.5 * n.size_x, c.x), inside.x = edge.x - std::copysign(step, c.x);
-  else edge.y = std::copysign(0.5 * n.size_y, c.y), inside.y = edge.y - std::copysign(step, c.y);
+  if (along_x)
+    edge.x = std::copysign(0.5 * n.size_x, c.x), inside.x = edge.x - std::copysign(step, c.x);
+  else
+    edge.y = std::copysign(0.5 * n.size_y, c.y), inside.y = edge.y - std::copysign(step, c.y);
   const Vec3 at = place.to_world(edge);
   return {at, normalized(at - place.to_world(inside))};
 }
@@ -60,7 +62,8 @@ std::vector<Vec3> hanging_drop(std::size_t count, Real spacing, Real top, const 
   int highest = reach;
   for (const auto& p : points) highest = std::min(highest, p[0]);
   std::vector<Vec3> places;
-  for (const auto& p : points) places.push_back(spacing * ((p[0] - highest + top) * down + Real(p[1]) * a + Real(p[2]) * b));
+  for (const auto& p : points)
+    places.push_back(spacing * ((p[0] - highest + top) * down + Real(p[1]) * a + Real(p[2]) * b));
   return places;
 }
 
@@ -110,9 +113,9 @@ CaughtAtHem catch_at_hem(const YarnNetwork& network, const ClothPlace& place, st
   return caught;
 }
 
-ReleaseReport release_hem_drops(const YarnNetwork& network, const ClothPlace& place, std::span<const std::uint8_t> at_hem,
-                                const Vec3& gravity, Real neck, const SolidAt& solid_at, ExchangeState& exchange,
-                                Liquid& liquid) {
+ReleaseReport release_hem_drops(const YarnNetwork& network, const ClothPlace& place,
+                                std::span<const std::uint8_t> at_hem, const Vec3& gravity, Real neck,
+                                const SolidAt& solid_at, ExchangeState& exchange, Liquid& liquid) {
   ReleaseReport report;
   const Real mass = liquid.particle_mass, spacing = liquid.spacing();
   if (mass <= 0) return report;

@@ -7,8 +7,8 @@
 namespace imbibe {
 namespace {
 
-constexpr Real bridged_at = 0.1;       // saturation of the yarns from which all crowns that meet are bridged
-constexpr Real waking_share = 0.005;   // of its mass that a resting sheet gains or loses before it is stepped again
+constexpr Real bridged_at = 0.1;      // saturation of the yarns from which all crowns that meet are bridged
+constexpr Real waking_share = 0.005;  // of its mass that a resting sheet gains or loses before it is stepped again
 
 // What the cloth is to carry, per node of the sheet.
 std::vector<Real> wanted_mass(const NetworkCloth& cloth, const Contents& contents, const ExchangeState& exchange) {
@@ -77,14 +77,14 @@ Real cling_pressure(Real crowns_per_area, Real crown_radius, Real surface_tensio
   return crowns_per_area * 2 * pi * crown_radius * surface_tension * std::max(cos_receding, 0.0);
 }
 
-void weigh(NetworkCloth& cloth, std::span<const std::uint8_t> held, const YarnNetwork& network, const WettingModel& model,
-           const Contents& contents, const ExchangeState& exchange, const MassLeft& left) {
+void weigh(NetworkCloth& cloth, std::span<const std::uint8_t> held, const YarnNetwork& network,
+           const WettingModel& model, const Contents& contents, const ExchangeState& exchange, const MassLeft& left) {
   Sheet& sheet = cloth.soft.sheet;
   set_added_mass(cloth.soft, held, wanted_mass(cloth, contents, exchange), left);
   const NodeMeans means = means_of(cloth, network, model, contents);
   const YarnType& yarn = network.yarn_types.front();
-  const Real cling = cling_pressure(0.5 / (network.pitch_x * network.pitch_y), yarn.radius, model.liquid.surface_tension,
-                                    portable::cos(yarn.fibre.receding_angle));
+  const Real cling = cling_pressure(0.5 / (network.pitch_x * network.pitch_y), yarn.radius,
+                                    model.liquid.surface_tension, portable::cos(yarn.fibre.receding_angle));
   const Real damping = cloth.wet.damping > 0 ? cloth.wet.damping : cloth.soft.cloth.damping;
   for (std::size_t n = 0; n < sheet.size(); ++n) {
     if (!(means.length[n] > 0)) continue;
