@@ -17,8 +17,8 @@ namespace {
 // Measured on the arrays of Particles, the sorted copies and the neighbour lists (about 40 neighbours of 4 bytes in
 // two lists) of LiquidFields; and on YarnNetwork, WettingModel, Contents, FaceMap and the solver's matrix.
 constexpr double bytes_per_particle = 900;
-constexpr double bytes_per_node = 700;
-constexpr double bytes_per_edge = 160;
+constexpr double bytes_per_node = 400;  // all in the solve
+constexpr double bytes_per_edge = 80;
 constexpr double base_bytes = 60e6;  // program, libraries, one picture
 // Files of one output: float32 fields of a .vtp point.
 constexpr double disk_per_particle = 36, disk_per_point = 36, disk_per_pore = 24, disk_per_picture = 6e5;
