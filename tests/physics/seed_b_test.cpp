@@ -135,12 +135,57 @@ TEST(SeedB, MomentumOfLiquidClothAndPinsIsKeptEachStep) {
     if (world.liquid.particles.size() > particles) continue;  // born in this step
     const Vec3 weight = (mass * (world.time - start)) * world.gravity;
     const Vec3 lost = momentum_of() - before - weight;
-    scale = std::max(scale, norm(before));
+    Real moving = 0;  // N s, sum of m |v|
+    for (const Float4& v : world.liquid.particles.velocity) moving += world.liquid.particle_mass * norm(Vec3{v.x, v.y, v.z});
+    scale = std::max(scale, moving);
     // Vapour takes its own momentum along; it is nanograms here.
     if (world.ledger.evaporated_kg - evaporated < 1e-9) worst = std::max(worst, norm(lost));
   }
-  // The liquid's velocities are single precision: 1e-7 of the momentum of each particle that is touched.
-  EXPECT_LT(worst, 1e-6 * scale);
+  RecordProperty("worst_step", std::to_string(1e9 * worst / scale) + "e-9");
+  // The liquid's velocities and pair forces are single precision: 6e-8 of a particle's momentum in each of its updates, at
+  // random. 3e-8 of the whole liquid's momentum in the worst step.
+  EXPECT_LT(worst, 1e-7 * scale);
+}
+
+// J: motion of liquid and cloth, what the cloth stores, and height above the origin.
+Real energy_of(const World& world, ClothScratch& scratch) {
+  const SoftSheet& soft = world.cell_cloths[0].soft;
+  Real energy = kinetic_energy(soft.sheet) + elastic_energy(soft.sheet, soft.cloth, scratch);
+  for (std::size_t n = 0; n < soft.sheet.size(); ++n)
+    energy -= soft.sheet.mass(n) * dot(world.gravity, soft.sheet.position[n]);
+  for (std::size_t i = 0; i < world.liquid.particles.size(); ++i) {
+    const Float4 &x = world.liquid.particles.position[i], &v = world.liquid.particles.velocity[i];
+    energy += world.liquid.particle_mass *
+              (0.5 * squared_norm(Vec3{v.x, v.y, v.z}) - dot(world.gravity, Vec3{x.x, x.y, x.z}));
+  }
+  return energy;
+}
+
+TEST(SeedB, WithoutAbsorptionAndDragEnergyNeverGrows) {
+  // A jet of a quarter of a second falls on the cloth; from when it ends nothing adds energy. Pins stand.
+  World world = small_scene({"textiles[0].wetting.cells.absorb=false", "textiles[0].sheet.soft.cloth.air.density=0",
+                             "liquid.solver.surface_tension=false", "liquid.pipes[0].stop=0.75",
+                             "domain={lower: [-4 m, -4 m, -9 m], upper: [4 m, 4 m, 4 m]}"});  // none leaves
+  StepScratch scratch;
+  ClothScratch elastic;
+  while (world.time < 0.75) step(world, {.until = 0.75, .rest_allowed = false}, scratch);
+  const Real start = energy_of(world, elastic);
+  Real lowest = start, growth = 0, worst_step = 0, last = start;
+  while (world.time < 1.75) {
+    step(world, {.until = 1.75, .rest_allowed = false}, scratch);
+    ASSERT_EQ(world.ledger.left_kg, 0);
+    const Real now = energy_of(world, elastic);
+    worst_step = std::max(worst_step, now - last), last = now;
+    lowest = std::min(lowest, now), growth = std::max(growth, now - lowest);
+  }
+  const Real lost = start - last;
+  RecordProperty("lost_J", std::to_string(lost));
+  RecordProperty("growth_of_lost", std::to_string(growth / lost));
+  RecordProperty("worst_step_of_lost", std::to_string(worst_step / lost));
+  EXPECT_GT(lost, 0);
+  // Not monotone step by step: the liquid's push moves nodes by dt J/m against their springs, which answer in the next step
+  // (decision 0007). It comes back: what is above the lowest energy so far stays within a twenty-fifth of what was lost.
+  EXPECT_LT(growth, 0.04 * lost);
 }
 
 }  // namespace
