@@ -1,5 +1,6 @@
 #include "imbibe/fabric/fibre_file.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include "fabric/support.h"
