@@ -9,9 +9,9 @@ namespace imbibe::bench {
 namespace {
 
 // A square of shirting of `nodes` nodes, level at first.
-Sheet square(std::int64_t nodes) {
+Sheet square(std::int64_t nodes, Real side = 1) {
   const auto n = static_cast<Index>(std::lround(std::sqrt(static_cast<double>(nodes))));
-  return make_sheet(GridSheet{.corner = {-0.5, -0.5, 0}, .width = 1, .height = 1, .columns = n, .rows = n,
+  return make_sheet(GridSheet{.corner = {-0.5 * side, -0.5 * side, 0}, .width = side, .height = side, .columns = n, .rows = n,
                               .areal_mass = fabric_hand("shirting").areal_mass});
 }
 
@@ -34,7 +34,7 @@ void falls(benchmark::State& state, std::int64_t size, bool by_edge) {
   report_extra(state, "substeps", substeps / static_cast<double>(state.iterations()));
 }
 
-// Water of as many particles as the sheet has nodes, a block of six layers that lies on a cloth held at its edges.
+// Water of as many particles as the sheet has nodes, a film of three layers, 6 mm deep, that lies on a cloth held at its edges.
 struct Pool {
   World world;
 };
@@ -42,23 +42,23 @@ Pool pool_of(std::int64_t size) {
   Pool pool;
   World& world = pool.world;
   CellCloth cloth;
-  cloth.soft.sheet = square(size);
+  cloth.soft.sheet = square(size, 0.3);
   for (const char* edge : {"left", "right"}) pin_nodes(cloth.soft.sheet, nodes_of_edge(cloth.soft.sheet, edge));
   cloth.soft.cloth = shirting();
   cloth.params.absorb = false;
   fit_cells(cloth);
   world.cell_cloths.push_back(std::move(cloth));
-  constexpr int layers = 6;
+  constexpr int layers = 3;
   const int across = static_cast<int>(std::lround(std::sqrt(static_cast<double>(size) / layers)));
-  const double spacing = 0.6 / across;
+  const double wide = 0.12, spacing = wide / across;
   world.liquid.particle_mass = world.liquid.kind.density * spacing * spacing * spacing;
   for (int k = 0; k < layers; ++k)
     for (int j = 0; j < across; ++j)
       for (int i = 0; i < across; ++i)
-        add_particle(world.liquid, {(i + 0.5) * spacing - 0.3, (j + 0.5) * spacing - 0.3, (k + 0.6) * spacing}, {});
+        add_particle(world.liquid, {(i + 0.5) * spacing - 0.5 * wide, (j + 0.5) * spacing - 0.5 * wide, (k + 0.6) * spacing}, {});
   world.domain.include({-2, -2, -2}), world.domain.include({2, 2, 2});
   StepScratch scratch;
-  for (int k = 0; k < 20; ++k) step(world, {.until = 1}, scratch);
+  for (int k = 0; k < 20; ++k) step(world, {.until = 1, .max_step = 2e-4}, scratch);
   return pool;
 }
 
