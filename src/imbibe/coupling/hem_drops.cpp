@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "imbibe/core/portable.h"
 #include "imbibe/coupling/footprint.h"
 #include "imbibe/geometry/direction.h"
 #include "imbibe/liquid/occupancy.h"
@@ -49,7 +50,7 @@ Bounds region_of(const YarnNetwork& n, const ClothPlace& place, std::span<const 
 
 std::vector<Vec3> hanging_drop(std::size_t count, Real spacing, Real top, const Vec3& down) {
   const Vec3 a = any_perpendicular(down), b = cross(down, a);
-  const int reach = static_cast<int>(std::ceil(std::cbrt(static_cast<Real>(count)))) + 1;
+  const int reach = static_cast<int>(std::ceil(portable::cbrt(static_cast<Real>(count)))) + 1;
   std::vector<std::array<int, 3>> points;
   for (int k = -reach; k <= reach; ++k)
     for (int j = -reach; j <= reach; ++j)

@@ -55,6 +55,15 @@ void FilmWriter::Process::start(const Image& first) {
     problem = "no film: ffmpeg is not installed (the pictures are there)";
     return;
   }
+  // The encoder of a run that was killed lives on for a moment, and may open its output only now. So ours is given an open
+  // file, not a name: two encoders never share one.
+  std::error_code none;
+  std::filesystem::remove(part, none);
+  const int output = open(part.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (output < 0) {
+    problem = std::string("no film: ") + std::strerror(errno);
+    return;
+  }
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   const std::string rate = std::to_string(frames_per_second);
   // Even sizes and yuv420p because many players know nothing else; faststart so that a browser can start at once.
@@ -63,7 +72,7 @@ void FilmWriter::Process::start(const Image& first) {
                                  "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,scale=out_color_matrix=bt709",
                                  "-c:v", "libx264", "-preset", "veryfast", "-crf", "17", "-pix_fmt", "yuv420p",
                                  "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709",
-                                 "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4", part.string()};
+                                 "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4", "/proc/self/fd/3"};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -72,11 +81,13 @@ void FilmWriter::Process::start(const Image& first) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     problem = std::string("no film: no channel to ffmpeg: ") + std::strerror(errno);
+    close(output);
     return;
   }
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, output, 3);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   // Its own process group: Ctrl-C reaches us, and we end the film properly.
@@ -87,6 +98,7 @@ void FilmWriter::Process::start(const Image& first) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
+  close(output);
   if (failure != 0) {
     child = 0;
     close(ends[0]);
