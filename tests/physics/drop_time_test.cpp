@@ -6,16 +6,14 @@
 namespace imbibe {
 namespace {
 
-// Scoured cotton shirting drinks such a drop in 1-10 s (the class that the AATCC 79 drop test calls absorbent). After
-// 10 s all but its last 0.5 % is gone; that rest, some ten particles on a full cloth, takes to 10.6 s.
-TEST(DropTime, OfFiftyMicrolitresOnScouredCottonIsAboutTenSeconds) {
+// Scoured cotton shirting drinks such a drop in 1-10 s (the class that the AATCC 79 drop test calls absorbent). Its last film
+// is one particle thick, so the end comes earlier with smaller ones: 0.018 mg 10.6 s, 0.012 mg (here) 10.0 s, 0.009 mg 9.6 s.
+TEST(DropTime, OfFiftyMicrolitresOnScouredCottonIsTenSecondsAtMost) {
   const auto file = test::scenes_folder() / "quickstart" / "drop_on_cotton.yaml";
   World world = test::build(read_scene(file), file);
   test::run_until(world, 1);
   EXPECT_GT(mass_balance(world).free, 0.1 * world.ledger.supplied_kg);
   test::run_until(world, 10);
-  EXPECT_LT(mass_balance(world).free, 5e-3 * world.ledger.supplied_kg);
-  test::run_until(world, 11);
   const MassBalance b = mass_balance(world);
   EXPECT_LT(b.free, 1e-3 * b.supplied);
   EXPECT_LE(b.error(), 1e-10);
