@@ -229,19 +229,18 @@ Real hem_neck_of(const World& world) {
   return hem_neck(kind.surface_tension, kind.density, norm(world.gravity));
 }
 
-// Liquid that has run down to a hem joins the drop that hangs there.
+// Liquid that has run down to a hem (scratch.at_hem) joins the drop that hangs there.
 std::size_t stop_at_hem(World& world, std::size_t index, StepScratch& scratch) {
   if (world.liquid.particles.size() == 0) return 0;
   Textile& textile = world.textiles[index];
   const YarnNetwork& network = textile.fabric->network;
   const ClothPlace place = place_of(world, index, scratch);
   const Real neck = hem_neck_of(world);
-  std::vector<std::uint8_t> at_hem;
-  find_hem(network, place, world.gravity, neck, at_hem);
   scratch.dead.assign(world.liquid.particles.size(), 0);
   const CaughtAtHem caught =
-      catch_at_hem(network, place, at_hem, world.gravity, neck, textile.cloth->soft, sheet_of(world, index, scratch).held,
+      catch_at_hem(network, place, scratch.at_hem, world.gravity, neck, textile.cloth->soft, sheet_of(world, index, scratch).held,
                    textile.exchange, world.liquid, scratch.dead);
+  // A particle may owe to two cloths that it touches: this one is given no more than it lent (its weight, not the books).
   textile.cloth->borrowed_kg = std::max(0.0, textile.cloth->borrowed_kg - caught.owed_kg);
   if (caught.particles > 0) remove_particles(world.liquid.particles, scratch.dead);
   return caught.particles;
@@ -254,10 +253,10 @@ ReleaseReport release_from_cloth(World& world, std::size_t index, std::span<cons
   const YarnNetwork& network = textile.fabric->network;
   const ClothPlace place = place_of(world, index, scratch);
   const Real neck = hem_neck_of(world);
-  std::vector<std::uint8_t> at_hem;
-  find_hem(network, place, world.gravity, neck, at_hem);
+  const std::vector<std::uint8_t>& at_hem = scratch.at_hem;
   std::vector<Real>& waiting = textile.exchange.waiting_kg;
-  std::vector<Real> hem_kg(waiting.size(), 0);
+  std::vector<Real>& hem_kg = scratch.hem_kg;
+  hem_kg.assign(waiting.size(), 0);
   for (std::size_t k = 0; k < waiting.size(); ++k)
     if (at_hem[k]) std::swap(hem_kg[k], waiting[k]);
   std::vector<ReleasedLiquid> elsewhere;
@@ -281,7 +280,10 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   Textile& textile = world.textiles[index];
   const YarnNetwork& network = textile.fabric->network;
   const ClothPlace place = place_of(world, index, scratch);
-  if (textile.cloth) report.absorbed += stop_at_hem(world, index, scratch);
+  if (textile.cloth) {
+    find_hem(network, place, world.gravity, hem_neck_of(world), scratch.at_hem);
+    report.absorbed += stop_at_hem(world, index, scratch);
+  }
   Footprint& footprint = scratch.footprint;
   find_footprint(world.liquid, network, place, *textile.faces, world.gravity, textile.exchange, footprint);
   // Taken from `world.time`, the beginning of the interval or (moving liquid) a time within it: step() lands on the

@@ -56,6 +56,8 @@ struct StepScratch {
   std::vector<FaceSupply> supplies;  // of footprint and reservoirs
   std::vector<Real> taken_kg;
   std::vector<std::uint8_t> dead;
+  std::vector<std::uint8_t> at_hem;            // of the textile that exchanges: nodes whose liquid hangs at a hem
+  std::vector<Real> hem_kg;
   std::vector<ParticleHit> hits;
   ContactScratch contact;
   std::vector<SoftSheetScratch> sheets_in_motion;  // of the cell cloths, then of the textiles (empty for fixed ones)
