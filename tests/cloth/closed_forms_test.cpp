@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "imbibe/cloth/cloth_step.h"
+#include "imbibe/verify/zero_crossings.h"
 
 namespace imbibe {
 namespace {
+
+using verify::ZeroCrossings;
 
 constexpr Real gravity = 9.81;
 
@@ -76,19 +79,6 @@ TEST(ClothClosedForms, twice_as_many_nodes_change_the_sag_by_less_than_two_per_c
   const Real coarse = catenary_sag(31), fine = catenary_sag(61);
   EXPECT_NEAR(coarse / fine, 1, 0.02);
 }
-
-// Frequency from the times at which `signal` crosses zero.
-struct ZeroCrossings {
-  Real last_value = 0, last_time = 0;
-  std::vector<Real> times;
-  void add(Real time, Real value) {
-    if (last_value * value < 0) times.push_back(last_time + (time - last_time) * last_value / (last_value - value));
-    last_value = value, last_time = time;
-  }
-  Real frequency() const {
-    return 0.5 * static_cast<Real>(times.size() - 1) / (times.back() - times.front());
-  }
-};
 
 // f = sqrt(T/mu)/(2 L): a strip of elastic cloth stretched by 2 %, no weight.
 Real string_frequency(Real added_part) {

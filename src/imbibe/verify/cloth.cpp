@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "imbibe/verify/families.h"
+#include "imbibe/verify/zero_crossings.h"
 
 namespace imbibe::verify {
 namespace {
@@ -69,19 +70,6 @@ CaseResult catenary(CaseRunner& runner) {
 }
 
 // ---- frequencies -------------------------------------------------------------------------------------------------
-
-// Frequency from the times at which a signal crosses zero.
-struct ZeroCrossings {
-  Real last_value = 0, last_time = 0;
-  std::vector<Real> times;
-  void add(Real time, Real value) {
-    if (last_value * value < 0) times.push_back(last_time + (time - last_time) * last_value / (last_value - value));
-    last_value = value, last_time = time;
-  }
-  Real frequency() const {
-    return times.size() < 2 ? 0 : 0.5 * static_cast<Real>(times.size() - 1) / (times.back() - times.front());
-  }
-};
 
 constexpr Real stiffness = 200, strain = 0.02;  // N/m; of the string
 
