@@ -275,20 +275,14 @@ ReleaseReport release_from_cloth(World& world, std::size_t index, std::span<cons
   return report;
 }
 
-// Textile step of dt: supply by the liquid on the faces, the network, then whole particles die or are born.
-void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, StepReport& report, Real& next_interval) {
+// The network's step, fed by the footprint and by reservoirs; scratch.taken_kg: what the footprint's supplies gave.
+WettingReport advance_network(World& world, std::size_t index, Real dt, StepScratch& scratch) {
   Textile& textile = world.textiles[index];
   const YarnNetwork& network = textile.fabric->network;
-  const ClothPlace place = place_of(world, index, scratch);
-  if (textile.cloth) {
-    find_hem(network, place, world.gravity, hem_neck_of(world), scratch.at_hem);
-    report.absorbed += stop_at_hem(world, index, scratch);
-  }
-  Footprint& footprint = scratch.footprint;
-  find_footprint(world.liquid, network, place, *textile.faces, world.gravity, textile.exchange, footprint);
+  const std::size_t of_footprint = scratch.footprint.supplies.size();
   // Taken from `world.time`, the beginning of the interval or (moving liquid) a time within it: step() lands on the
   // times at which reservoirs change.
-  scratch.supplies = footprint.supplies;
+  scratch.supplies = scratch.footprint.supplies;
   append_supplies(textile.reservoirs, world.time, scratch.supplies);
   scratch.taken_kg.assign(scratch.supplies.size(), 0);
   const Vec3 gravity{dot(world.gravity, textile.placement.u), dot(world.gravity, textile.placement.v),
@@ -300,19 +294,47 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   }
   TextileScratch& own = scratch.textiles[index];
   if (own.model != textile.model) own = {textile.model, {}};
-  const WettingReport wetting = step_wetting(*textile.model, textile.contents, scratch.supplies, scratch.taken_kg,
-                                             world.air, gravity, dt, own.wetting, textile.cloth ? &bent : nullptr);
-  report.wetting_iterations += wetting.newton_iterations;
+  WettingReport wetting = step_wetting(*textile.model, textile.contents, scratch.supplies, scratch.taken_kg, world.air,
+                                       gravity, dt, own.wetting, textile.cloth ? &bent : nullptr);
   if (!wetting.converged)
     throw NumericalError(world.time, world.step, "wetting",
                          fmt::format("textile {}: the network came {:.3g} s of {:.3g} s far; its hardest node is {}",
                                      textile.name, wetting.advanced_s, dt, node_text(network, wetting.hardest_node)));
   world.ledger.evaporated_kg += wetting.evaporated_kg;
+  world.ledger.supplied_kg += book_supplied(textile.reservoirs, world.time, scratch.taken_kg, of_footprint);
+  scratch.taken_kg.resize(of_footprint);
+  return wetting;
+}
+
+// The saturations that the next step's walls show; one that is not finite ends the run.
+void show_on_walls(const World& world, std::size_t index, StepScratch& scratch) {
+  if (index >= scratch.saturation.size()) return;
+  const Textile& textile = world.textiles[index];
+  std::vector<float>& shown = scratch.saturation[index];
+  show_saturations(textile, world.air, shown);
+  const auto lost = std::find_if(shown.begin(), shown.end(), [](float s) { return !std::isfinite(s); });
+  if (lost == shown.end()) return;
+  const auto node = static_cast<std::size_t>(lost - shown.begin());
+  throw NumericalError(world.time, world.step, "wetting",
+                       fmt::format("textile {}: {} has no finite saturation", textile.name,
+                                   node_text(textile.fabric->network, node)));
+}
+
+// Textile step of dt: supply by the liquid on the faces, the network, then whole particles die or are born.
+void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, StepReport& report, Real& next_interval) {
+  Textile& textile = world.textiles[index];
+  const YarnNetwork& network = textile.fabric->network;
+  const ClothPlace place = place_of(world, index, scratch);
+  if (textile.cloth) {
+    find_hem(network, place, world.gravity, hem_neck_of(world), scratch.at_hem);
+    report.absorbed += stop_at_hem(world, index, scratch);
+  }
+  Footprint& footprint = scratch.footprint;
+  find_footprint(world.liquid, network, place, *textile.faces, world.gravity, textile.exchange, footprint);
+  const WettingReport wetting = advance_network(world, index, dt, scratch);
+  report.wetting_iterations += wetting.newton_iterations;
   next_interval = std::min(next_interval, wetting.suggested_step);
 
-  world.ledger.supplied_kg +=
-      book_supplied(textile.reservoirs, world.time, scratch.taken_kg, footprint.supplies.size());
-  scratch.taken_kg.resize(footprint.supplies.size());
   const Real owed_before = owed(world.liquid);
   book_taken(footprint, scratch.taken_kg, world.liquid.particles, textile.exchange);
   scratch.dead.assign(world.liquid.particles.size(), 0);
@@ -334,14 +356,7 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
     const MassLeft left = leave_cloth(world.liquid, released, place, sheet, textile.cloth->soft);
     weigh(*textile.cloth, sheet.held, network, *textile.model, textile.contents, textile.exchange, left);
   }
-  if (index >= scratch.saturation.size()) return;
-  show_saturations(textile, world.air, scratch.saturation[index]);
-  const auto& shown = scratch.saturation[index];
-  const auto lost = std::find_if(shown.begin(), shown.end(), [](float s) { return !std::isfinite(s); });
-  if (lost != shown.end())
-    throw NumericalError(world.time, world.step, "wetting",
-                         fmt::format("textile {}: {} has no finite saturation", textile.name,
-                                     node_text(network, static_cast<std::size_t>(lost - shown.begin()))));
+  show_on_walls(world, index, scratch);
 }
 
 void exchange_all(World& world, Real dt, StepScratch& scratch, StepReport& report) {
