@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <new>
 
+#include "apps/best_build.h"
 #include "apps/commands.h"
 #include "imbibe/core/error.h"
 
@@ -35,6 +36,7 @@ std::string command_line(int count, char** words) {
 }  // namespace
 
 int main(int count, char** words) {
+  go_on_as_best_build(words);
   CLI::App app{"Imbibe: liquid wetting textiles", "imbibe"};
   app.require_subcommand(1);
   app.set_version_flag("--version", IMBIBE_VERSION);

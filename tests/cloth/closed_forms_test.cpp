@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "imbibe/cloth/cloth_step.h"
+#include "imbibe/verify/heavy_elastica.h"
 #include "imbibe/verify/zero_crossings.h"
 
 namespace imbibe {
@@ -139,39 +140,6 @@ TEST(ClothClosedForms, a_hanging_strip_swings_as_a_hanging_chain) {
 
 // --- cantilever -----------------------------------------------------------------------------------------------------
 
-// Drop of the tip of a heavy elastica clamped flat: B theta'' = -w (L - s) cos(theta), theta(0) = 0, theta'(L) = 0, theta
-// downward; shooting on theta'(0), fourth-order steps.
-struct Tip {
-  Real drop = 0, reach = 0, end_moment = 0;
-};
-Tip shoot(Real slope, Real length, Real weight_over_stiffness) {
-  const int steps = 2000;
-  const Real h = length / steps;
-  Real theta = 0, rate = slope, drop = 0, reach = 0;
-  const auto bend = [&](Real s, Real angle) { return -weight_over_stiffness * (length - s) * std::cos(angle); };
-  for (int k = 0; k < steps; ++k) {
-    const Real s = k * h;
-    const Real a1 = rate, b1 = bend(s, theta);
-    const Real a2 = rate + 0.5 * h * b1, b2 = bend(s + 0.5 * h, theta + 0.5 * h * a1);
-    const Real a3 = rate + 0.5 * h * b2, b3 = bend(s + 0.5 * h, theta + 0.5 * h * a2);
-    const Real a4 = rate + h * b3, b4 = bend(s + h, theta + h * a3);
-    const Real middle = theta + 0.5 * h * a2, end = theta + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    drop += h / 6 * (std::sin(theta) + 4 * std::sin(middle) + std::sin(end));
-    reach += h / 6 * (std::cos(theta) + 4 * std::cos(middle) + std::cos(end));
-    theta = end;
-    rate += h / 6 * (b1 + 2 * b2 + 2 * b3 + b4);
-  }
-  return {drop, reach, rate};
-}
-Tip elastica(Real length, Real weight_over_stiffness) {
-  Real low = 0, high = weight_over_stiffness * length * length;
-  for (int k = 0; k < 100; ++k) {
-    const Real middle = 0.5 * (low + high);
-    (shoot(middle, length, weight_over_stiffness).end_moment > 0 ? high : low) = middle;
-  }
-  return shoot(0.5 * (low + high), length, weight_over_stiffness);
-}
-
 TEST(ClothClosedForms, a_cantilever_strip_droops_as_the_heavy_elastica) {
   // The clamp holds the first two columns: the cloth is free from the middle between them on.
   FabricHand hand = inextensible();
@@ -186,7 +154,7 @@ TEST(ClothClosedForms, a_cantilever_strip_droops_as_the_heavy_elastica) {
     ClothParams params = quiet_params(hand);
     params.strain_error = 1e-3;
     settle(sheet, params, 1.2);
-    const Tip tip = elastica(free_length, 0.2 * gravity / 2e-5);
+    const verify::ElasticaTip tip = verify::heavy_elastica(free_length, 0.2 * gravity / 2e-5);
     const Vec3 end = sheet.position[columns - 1];
     EXPECT_NEAR(-end.z, tip.drop, 0.03 * tip.drop) << "length " << free_length;
     EXPECT_NEAR(end.x - 0.5 * edge, tip.reach, 0.03 * free_length) << "length " << free_length;

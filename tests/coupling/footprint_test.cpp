@@ -5,24 +5,14 @@
 #include <numeric>
 
 #include "imbibe/coupling/absorption.h"
-#include "support/woven.h"
+#include "support/faced_cloth.h"
 
 namespace imbibe {
 namespace {
 
-struct Scene {
-  Fabric fabric = test::woven("cotton", "cotton", 16);
-  Placement placement;
-  Liquid liquid;
-  FaceMap map;
-  ExchangeState exchange;
+struct Scene : test::FacedCloth {
   Footprint footprint;
 
-  Scene() {
-    liquid.particle_mass = 998.2 * std::pow(0.5e-3, 3);
-    map = build_face_map(fabric.network, liquid.spacing());
-    exchange.waiting_kg.assign(fabric.network.nodes(), 0);
-  }
   // A layer of particles that touches the face, side x side, centred on (x, y).
   void add_layer(int side, Real x, Real y) {
     const Real dx = liquid.spacing(), z = 0.5 * fabric.network.thickness + 0.5 * dx;
@@ -31,10 +21,7 @@ struct Scene {
         add_particle(liquid, {x + (i - 0.5 * (side - 1)) * dx, y + (j - 0.5 * (side - 1)) * dx, z}, {0, 0, -0.1});
   }
   void find() { find_footprint(liquid, fabric.network, placement, map, {0, 0, -9.81}, exchange, footprint); }
-  Real owed() const {
-    const std::vector<Real>& kg = liquid.particles.owed_kg;
-    return std::accumulate(kg.begin(), kg.end(), 0.0);
-  }
+  Real owed() const { return test::sum(liquid.particles.owed_kg); }
 };
 
 TEST(Footprint, SharesOfEveryTouchingParticleSumToOne) {

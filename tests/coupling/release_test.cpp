@@ -2,36 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
-#include "support/woven.h"
+#include "support/faced_cloth.h"
 
 namespace imbibe {
 namespace {
 
 constexpr Vec3 down{0, 0, -9.81};
 
-struct Scene {
-  Fabric fabric = test::woven("cotton", "cotton", 16);
-  Placement placement;
-  Liquid liquid;
-  FaceMap map;
-  ExchangeState exchange;
-
-  Scene() {
-    liquid.particle_mass = 998.2 * std::pow(0.5e-3, 3);
-    map = build_face_map(fabric.network, liquid.spacing());
-    exchange.waiting_kg.assign(fabric.network.nodes(), 0);
-  }
+struct Scene : test::FacedCloth {
   Index middle_pore() const { return static_cast<Index>(fabric.network.segments() + fabric.network.pores() / 2); }
   ReleaseReport release(const std::vector<ReleasedLiquid>& released = {}, const Vec3& gravity = down,
                         const SolidAt& solid_at = {}) {
     return release_particles(fabric.network, placement, map, released, gravity, solid_at, exchange, liquid);
   }
-  Real waiting() const {
-    const std::vector<Real>& kg = exchange.waiting_kg;
-    return std::accumulate(kg.begin(), kg.end(), 0.0);
-  }
+  Real waiting() const { return test::sum(exchange.waiting_kg); }
   Real height(std::size_t particle) const { return liquid.particles.position[particle].z; }
   Real half() const { return 0.5 * fabric.network.thickness; }
 };

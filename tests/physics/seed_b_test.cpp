@@ -36,7 +36,7 @@ Seen go(World world, Real until) {
     seen.content.push_back(cell_kg(w.cell_cloths[0]));
     seen.worst_ledger = std::max(seen.worst_ledger, mass_balance(w).error());
   };
-  run(seen.world, {.until = until, .every = 0.1}, hooks);
+  run(seen.world, {.until = until, .every = 0.1, .max_steps = 0, .step = {}}, hooks);
   return seen;
 }
 

@@ -25,17 +25,20 @@ struct Outcome {
   std::string output;  // of stdout and stderr
 };
 
-// `arguments` as a shell reads them; `before` is put in front of the command, e.g. "ulimit -f 100;".
-inline Outcome run_command(const std::string& arguments, const std::string& before = "") {
-  const std::string line =
-      "exec 2>&1; " + before + " IMBIBE_DATA_DIR='" IMBIBE_SOURCE_DIR "' '" IMBIBE_COMMAND "' " + arguments;
-  FILE* pipe = popen(line.c_str(), "r");
+// `line` as a shell reads it.
+inline Outcome run_line(const std::string& line) {
+  FILE* pipe = popen(("exec 2>&1; " + line).c_str(), "r");
   Outcome outcome;
   std::array<char, 4096> buffer;
   while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) outcome.output.append(buffer.data(), n);
   const int status = pclose(pipe);
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
+}
+
+// The command with `arguments`; `before` is put in front of it, e.g. "ulimit -f 100;".
+inline Outcome run_command(const std::string& arguments, const std::string& before = "") {
+  return run_line(before + " IMBIBE_DATA_DIR='" IMBIBE_SOURCE_DIR "' '" IMBIBE_COMMAND "' " + arguments);
 }
 
 // Starts the command with its output thrown away, sends `signal_number` once `ready()` holds (looked at every

@@ -5,6 +5,7 @@
 
 #include "imbibe/fabric/network.h"
 #include "imbibe/wetting/wetting_model.h"
+#include "imbibe/wetting/wetting_step.h"
 
 namespace imbibe::testing {
 
@@ -210,6 +211,16 @@ inline WettingParams transport_only() {
   p.sorption = SorptionModel::none;
   p.swelling = false;
   return p;
+}
+
+inline Real total_kg(const WettingModel& m, const Contents& c) {
+  return total_sorbed_kg(m, c) + total_yarn_kg(m, c) + total_pore_kg(m, c);
+}
+
+inline Real released_kg(const WettingReport& report) {
+  Real sum = 0;
+  for (const auto& r : report.released) sum += r.kg;
+  return sum;
 }
 
 }  // namespace imbibe::testing

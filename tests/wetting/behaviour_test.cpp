@@ -16,19 +16,12 @@ using testing::cotton_fibre;
 using testing::paper_sheet;
 using testing::paper_yarn;
 using testing::polyester_fibre;
+using testing::released_kg;
 using testing::shirting;
 using testing::shirting_yarn;
+using testing::total_kg;
 using testing::wool_fibre;
 using testing::yarn_strip;
-
-Real total_kg(const WettingModel& m, const Contents& c) {
-  return total_sorbed_kg(m, c) + total_yarn_kg(m, c) + total_pore_kg(m, c);
-}
-Real released_kg(const WettingReport& report) {
-  Real sum = 0;
-  for (const auto& r : report.released) sum += r.kg;
-  return sum;
-}
 
 TEST(Swelling, KeepsTheCellsVolume) {
   WettingParams params;

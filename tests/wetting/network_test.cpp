@@ -21,21 +21,13 @@ using testing::paper_yarn;
 using testing::plain_weave;
 using testing::polyester_fibre;
 using testing::polypropylene_fibre;
+using testing::released_kg;
 using testing::shirting;
 using testing::shirting_yarn;
+using testing::total_kg;
 using testing::transport_only;
 using testing::wool_fibre;
 using testing::yarn_strip;
-
-Real total_kg(const WettingModel& m, const Contents& c) {
-  return total_sorbed_kg(m, c) + total_yarn_kg(m, c) + total_pore_kg(m, c);
-}
-
-Real released_kg(const WettingReport& report) {
-  Real sum = 0;
-  for (const auto& r : report.released) sum += r.kg;
-  return sum;
-}
 
 constexpr Real plenty = 1e3;  // kg
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "imbibe/verify/families.h"
+#include "imbibe/verify/heavy_elastica.h"
 #include "imbibe/verify/zero_crossings.h"
 
 namespace imbibe::verify {
@@ -154,41 +155,6 @@ CaseResult chain(CaseRunner& runner) {
 
 // ---- bending -----------------------------------------------------------------------------------------------------
 
-// A heavy elastica clamped flat: B theta'' = -w (L - s) cos(theta), theta(0) = 0, theta'(L) = 0, theta downward; shooting on
-// theta'(0) with Runge-Kutta's fourth-order steps.
-struct Tip {
-  Real drop = 0, reach = 0, end_moment = 0;
-};
-Tip shoot(Real slope, Real length, Real weight_over_stiffness) {
-  const int steps = 2000;
-  const Real h = length / steps;
-  Tip tip;
-  Real theta = 0, rate = slope;
-  const auto bend = [&](Real s, Real angle) { return -weight_over_stiffness * (length - s) * std::cos(angle); };
-  for (int k = 0; k < steps; ++k) {
-    const Real s = k * h;
-    const Real a1 = rate, b1 = bend(s, theta);
-    const Real a2 = rate + 0.5 * h * b1, b2 = bend(s + 0.5 * h, theta + 0.5 * h * a1);
-    const Real a3 = rate + 0.5 * h * b2, b3 = bend(s + 0.5 * h, theta + 0.5 * h * a2);
-    const Real a4 = rate + h * b3, b4 = bend(s + h, theta + h * a3);
-    const Real middle = theta + 0.5 * h * a2, end = theta + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    tip.drop += h / 6 * (std::sin(theta) + 4 * std::sin(middle) + std::sin(end));
-    tip.reach += h / 6 * (std::cos(theta) + 4 * std::cos(middle) + std::cos(end));
-    theta = end;
-    rate += h / 6 * (b1 + 2 * b2 + 2 * b3 + b4);
-  }
-  tip.end_moment = rate;
-  return tip;
-}
-Tip elastica_tip(Real length, Real weight_over_stiffness) {
-  Real low = 0, high = weight_over_stiffness * length * length;
-  for (int k = 0; k < 100; ++k) {
-    const Real middle = 0.5 * (low + high);
-    (shoot(middle, length, weight_over_stiffness).end_moment > 0 ? high : low) = middle;
-  }
-  return shoot(0.5 * (low + high), length, weight_over_stiffness);
-}
-
 CaseResult elastica(CaseRunner& runner) {
   CaseResult r;
   constexpr Real bending = 2e-5;  // N m
@@ -202,7 +168,7 @@ CaseResult elastica(CaseRunner& runner) {
                                              set("textiles[0].sheet.soft.cloth.hand.bending_warp", bending),
                                              fmt::format("textiles[0].sheet.soft.pins=[{{edge: left}}, {{point: [{0:.9g} m, 0 m]}}, {{point: [{0:.9g} m, 0.02 m]}}]", edge)});
     const Sheet& sheet = sheet_of(world);
-    const Tip tip = elastica_tip(free_length, areal_mass * g / bending);
+    const ElasticaTip tip = heavy_elastica(free_length, areal_mass * g / bending);
     const Vec3 end = sheet.position[columns - 1], start = sheet.position[0];
     const std::string name = fmt::format("{:g} mm: ", 1e3 * free_length);
     r.checks.push_back(near(name + "drop of the free end", 1e3 * (start.z - end.z), 1e3 * tip.drop, "mm", 0.03, "project's goal"));
