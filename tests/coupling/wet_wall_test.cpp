@@ -41,14 +41,14 @@ TEST(WetWall, AMixedClothShowsTheMeanOfItsYarns) {
 TEST(FaceMap, FindsEveryNodeWithinReach) {
   const Fabric fabric = test::woven("cotton", "cotton", 10);
   const FaceMap map = build_face_map(fabric.network, 0.7e-3);
-  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {2.3e-3, -1.7e-3}, {-4.9e-3, 4.9e-3}}) {
+  for (const Vec3& at : {Vec3{0, 0, 0}, Vec3{2.3e-3, -1.7e-3, 0}, Vec3{-4.9e-3, 4.9e-3, 0}}) {
     std::size_t all = 0, found = 0;
     const auto within = [&](Index k) {
       const Vec3& c = fabric.network.node_centre(k);
-      return std::hypot(c.x - x, c.y - y) < map.reach;
+      return std::hypot(c.x - at.x, c.y - at.y) < map.reach;
     };
     for (Index k = 0; k < fabric.network.nodes(); ++k) all += within(k);
-    map.near(x, y, true, [&](Index k) { found += within(k); });
+    map.near(at.x, at.y, true, [&](Index k) { found += within(k); });
     EXPECT_EQ(found, all);
   }
 }
