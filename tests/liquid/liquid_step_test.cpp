@@ -99,7 +99,7 @@ TEST(LiquidStep, momentum_is_conserved_when_drops_collide_in_the_air) {
     peak = std::max(peak, report.peak_density_error);
     ASSERT_LT(report.max_speed, 2) << "burst at " << time;
   }
-  EXPECT_LT(norm(mean_velocity(liquid) - before), 2e-4);  // of speeds of 0.5 m/s: single precision over 100 steps
+  EXPECT_LT(norm(mean_velocity(liquid) - before), 1e-9);  // of speeds of 0.5 m/s, over 100 steps (momentum.h)
   RecordProperty("peak_density_error_percent", std::to_string(100 * peak));
 }
 

@@ -82,7 +82,7 @@ TEST(NetworkClothRun, AFallingDropMovesTheClothIsTakenUpAndWeighsOnIt) {
   EXPECT_GT(absorbed, 20u);
   EXPECT_LT(lowest, -0.3e-3);  // it gave way
   // Per step and relative to the drop's momentum. The liquid's sums are of single precision.
-  EXPECT_LT(worst_momentum, 2e-6 * scale);
+  EXPECT_LT(worst_momentum, 1e-9 * scale);
   // All that was taken weighs, less what is lent by particles that are still whole.
   const Textile& textile = world.textiles[0];
   const MassBalance b = mass_balance(world);

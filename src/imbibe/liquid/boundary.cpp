@@ -379,11 +379,18 @@ void collect_feet(Boundary& boundary, std::vector<SheetFoot*>& feet) {
     }
 }
 
-void give_feet_impulses(const Boundary& boundary, std::span<const Wall> walls) {
+void give_feet_impulses(const Boundary& boundary, std::span<const Wall> walls, std::vector<Vec3>& wall_impulse) {
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    if (walls[k].sheet != nullptr) wall_impulse[k] = {};
   for (const Boundary::Tile& tile : boundary.tiles)
-    for (const SheetFoot& foot : tile.feet)
-      for (std::size_t c = 0; c < 3; ++c)
-        walls[foot.wall].sheet->impulse[foot.node[c]] += static_cast<Real>(foot.weight[c]) * foot.impulse;
+    for (const SheetFoot& foot : tile.feet) {
+      std::vector<Vec3>& nodes = walls[foot.wall].sheet->impulse;
+      // The parts of a foot make its whole, which weights of single precision alone do not.
+      const Vec3 first = static_cast<Real>(foot.weight[0]) * foot.impulse, second = static_cast<Real>(foot.weight[1]) * foot.impulse;
+      nodes[foot.node[0]] += first, nodes[foot.node[1]] += second;
+      nodes[foot.node[2]] += foot.impulse - first - second;
+      wall_impulse[foot.wall] += foot.impulse;
+    }
 }
 
 void add_wall_impulse(const Boundary& boundary, std::span<const float> coefficient, Real scale,

@@ -80,8 +80,9 @@ struct Boundary {
 // The feet on soft sheets of all particles that liquid joins to the sheet, with the pushes that density.h left them.
 void collect_feet(Boundary& boundary, std::vector<SheetFoot*>& feet);
 
-// Impulses of all feet to the nodes of their sheets (SheetWall::impulse), in fixed order.
-void give_feet_impulses(const Boundary& boundary, std::span<const Wall> walls);
+// Impulses of all feet to the nodes of their sheets (SheetWall::impulse), in fixed order; wall_impulse of a sheet becomes
+// their sum.
+void give_feet_impulses(const Boundary& boundary, std::span<const Wall> walls, std::vector<Vec3>& wall_impulse);
 
 // Samples all walls within the support radius of each particle; position: padded, count particles.
 void sample_walls(Boundary& boundary, std::span<const Float4> position, std::size_t count, std::span<const Wall> walls,

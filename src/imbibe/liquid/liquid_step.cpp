@@ -5,6 +5,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/liquid/damping.h"
 #include "imbibe/liquid/density.h"
+#include "imbibe/liquid/momentum.h"
 
 namespace imbibe {
 
@@ -107,6 +108,28 @@ void move(LiquidFields& f, Particles& p, Real dt, bool shifts) {
   });
 }
 
+// The velocities' sum is what gravity and the walls have left of it (momentum.h). Returns what could not be stored, N s.
+Vec3 keep_momentum(const Liquid& liquid, const LiquidFields& f, const SpeedSums& before, const Vec3& gravity, Real dt,
+                   std::span<const Vec3> wall_impulse, std::span<Float4> velocity) {
+  const Real count = static_cast<Real>(f.count);
+  Vec3 given = (count * dt) * gravity;
+  for (const Vec3& impulse : wall_impulse) given -= impulse / liquid.particle_mass;
+  const Real pushed = parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
+    Real sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += norm(Vec3(f.force[i].x, f.force[i].y, f.force[i].z));
+    return sum;
+  });
+  return liquid.particle_mass * make_up_rounding(velocity, before, given, dt * (pushed + count * norm(gravity)));
+}
+
+// Some 1e-12 of the step's impulses, to the node under the first particle on a soft sheet.
+void give_rest(const LiquidFields& f, std::span<const Wall> walls, const Vec3& rest, std::vector<Vec3>& wall_impulse) {
+  if (f.feet.empty()) return;
+  const SheetFoot& foot = *f.feet.front();
+  walls[foot.wall].sheet->impulse[foot.node[0]] += rest;
+  wall_impulse[foot.wall] += rest;
+}
+
 // The time in which something can happen over one spacing: a density error that fades in a few of these neither builds
 // up under a flow nor heats the liquid by being kicked out at once.
 Real shortest_time(const Liquid& liquid, const LiquidParams& params, const Vec3& gravity) {
@@ -161,6 +184,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   LiquidFields& f = scratch.fields;
   Particles& particles = liquid.particles;
   StageTimer timer;
+  const SpeedSums speeds_before = sum_speeds(particles.velocity);
 
   sort_particles(f.neighbours, particles, Kernel(params.support * liquid.spacing()));
   begin_fields(f, liquid);
@@ -205,7 +229,6 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   const PressureReport pressure =
       project_velocity(f, params.pressure, dt, shifts ? 0 : std::min(1.0, relaxation), warm_pressure, sheets);
   add_wall_impulse(f.boundary, f.wall_push, liquid.particle_mass * dt, report.wall_pressure_impulse);
-  if (sheets != nullptr) give_feet_impulses(f.boundary, walls);
   report.pressure_iterations = pressure.iterations;
   report.density_error = pressure.density_error;
   report.peak_density_error = pressure.peak_density_error;
@@ -217,6 +240,9 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   report.put_back = keep_outside(f.boundary, f.position, particles.position, particles.velocity, f.count, walls,
                                  liquid.spacing(), liquid.particle_mass, report.wall_pressure_impulse);
   for (std::size_t k = 0; k < walls.size(); ++k) report.wall_impulse[k] += report.wall_pressure_impulse[k];
+  if (sheets != nullptr) give_feet_impulses(f.boundary, walls, report.wall_impulse);
+  const Vec3 rest = keep_momentum(liquid, f, speeds_before, gravity, dt, report.wall_impulse, particles.velocity);
+  if (sheets != nullptr) give_rest(f, walls, rest, report.wall_impulse);
   report.max_speed = greatest_speed(particles.velocity);
   if (!std::isfinite(report.max_speed)) throw NumericalError(0, 0, "liquid", "a velocity is not finite");
   report.times.move = timer.lap();

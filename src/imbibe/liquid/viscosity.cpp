@@ -132,6 +132,8 @@ ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, 
       f.boundary.give(i, s, static_cast<Real>(f.particle_mass) * Vec3(lost));
     }
   }
+  // u_old + dt A u, which is u but for what the solver left: so the liquid loses exactly what its friction was booked as.
+  if (implicit && report.converged) add_scaled(f.velocity, 1, f.residual, f.count);
   return report;
 }
 

@@ -189,7 +189,7 @@ void bounce_off_yarns(World& world, StepScratch& scratch, StepReport& report) {
       v.x = static_cast<float>(after.velocity.x);
       v.y = static_cast<float>(after.velocity.y);
       v.z = static_cast<float>(after.velocity.z);
-      textile.exchange.impulse += after.impulse_on_textile;
+      textile.exchange.impulse += world.liquid.particle_mass * (before - Vec3(v.x, v.y, v.z));  // as stored
       ++textile.exchange.bounces;
     }
     report.hits += scratch.hits.size();
