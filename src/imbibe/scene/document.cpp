@@ -235,9 +235,10 @@ std::optional<std::string> file_text(const std::filesystem::path& file, const Pl
   if (std::filesystem::is_directory(status)) return fail(fmt::format("'{}' is a folder, not a file", file.string()));
   std::ifstream in(file, std::ios::binary);
   if (!in) return fail(fmt::format("'{}' cannot be opened for reading", file.string()));
-  std::string text(limits.bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  std::string text;
+  char piece[1 << 16];
+  while (text.size() <= limits.bytes && (in.read(piece, sizeof piece), in.gcount() > 0))
+    text.append(piece, static_cast<std::size_t>(in.gcount()));
   if (text.size() > limits.bytes)
     return fail(fmt::format("'{}' is larger than {} MiB", file.string(), limits.bytes >> 20));
   return text;
