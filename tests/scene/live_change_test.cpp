@@ -1,5 +1,6 @@
 #include "imbibe/scene/live_change.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -169,6 +170,75 @@ TEST(LiveChange, ShorterIntervalOfADropperMakesNoBurst) {
   EXPECT_NEAR(next_emission(r.world.sources.back()), 27e-3, 1e-9);
   run_to(r.world, 26e-3);
   EXPECT_EQ(r.world.ledger.supplied_kg, supplied);
+}
+
+std::string pipe_scene() {
+  return "version: 1\nduration: 200 ms\nliquid:\n  particle_mass: 1 mg\n  pipes:\n"
+         "    - {radius: 3 mm, length: 10 mm, particle_rate: 1000, speed: 0.5 m/s, stop: 120 ms,\n"
+         "       transform: {rotation: [180 deg, 0 deg, 0 deg], translation: [0 mm, 0 mm, 30 mm]}}\n"
+         "solids: [{name: floor, shape: {kind: plane, point: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+         "domain: {lower: [-60 mm, -60 mm, -10 mm], upper: [60 mm, 60 mm, 60 mm]}\n";
+}
+
+TEST(LiveChange, PipeGoesOnWhereItWasWhateverIsChanged) {
+  Running r{read_scene_text(pipe_scene(), "pipe"), {}};
+  r.world = build_world(r.scene, library());
+  run_to(r.world, 50e-3);
+  const int emitted = r.world.sources[0].emitted;
+  EXPECT_NEAR(emitted, 50, 4);  // batches of 4 ms
+  apply_change(r.scene, r.world, library(), {"air.humidity=30 %"});
+  EXPECT_EQ(r.world.sources[0].emitted, emitted);
+  EXPECT_EQ(r.world.sources[0].count, build_world(r.scene, library()).sources[0].count);
+  run_to(r.world, 60e-3);
+  EXPECT_NEAR(r.world.sources[0].emitted, 60, 4);
+}
+
+TEST(LiveChange, PipeOfAnotherRateEndsWhenItIsToEnd) {
+  for (const Real rate : {250.0, 4000.0}) {
+    Running r{read_scene_text(pipe_scene(), "pipe"), {}};
+    r.world = build_world(r.scene, library());
+    run_to(r.world, 50e-3);
+    apply_change(r.scene, r.world, library(), {fmt::format("liquid.pipes[0].particle_rate={}", rate)});
+    run_to(r.world, 200e-3);
+    EXPECT_NEAR(r.world.sources[0].emitted, 50 + 70e-3 * rate, 4 + 1e-3 * 4 * rate) << rate;
+    EXPECT_EQ(r.world.sources[0].emitted, r.world.sources[0].count) << rate;
+    EXPECT_LT(mass_balance(r.world).error(), 1e-10);
+  }
+}
+
+TEST(LiveChange, WhatAChangeLeavesAloneIsShared) {
+  Running r = run_with({}, 5e-3);
+  const Textile before = r.world.textiles[0];
+  apply_change(r.scene, r.world, library(), {"air.humidity=20 %", "gravity=[0, 0, -5 m/s2]"});
+  EXPECT_EQ(r.world.textiles[0].fabric, before.fabric);
+  EXPECT_EQ(r.world.textiles[0].model, before.model);
+  EXPECT_EQ(r.world.textiles[0].faces, before.faces);
+  EXPECT_EQ(r.world.textiles[0].yarn_boxes, before.yarn_boxes);
+  apply_change(r.scene, r.world, library(), {"textiles[0].contact_angle=40 deg"});
+  EXPECT_NE(r.world.textiles[0].model, before.model);
+  EXPECT_EQ(r.world.textiles[0].yarn_boxes, before.yarn_boxes);
+}
+
+TEST(LiveChange, WhatIsSharedEqualsWhatWouldBeBuiltAnew) {
+  Running r = run_with({}, 10e-3);
+  for (const std::vector<std::string>& changes :
+       {std::vector<std::string>{"textiles[0].contact_angle=10 deg"}, {"textiles[0].contact_angle=80 deg"},
+        {"textiles[0].receding_angle=5 deg"}, {"textiles[0].wetting.network.crossing_factor=1"},
+        {"liquid.kind.viscosity=3 mPa.s"}, {"air.temperature=35 degC"}, {"textiles[0].warp.tortuosity_squared=6"}}) {
+    SCOPED_TRACE(changes[0]);
+    apply_change(r.scene, r.world, library(), changes);
+    const World anew = build_world(r.scene, library());
+    const WettingModel &model = *r.world.textiles[0].model, &built = *anew.textiles[0].model;
+    EXPECT_TRUE(model.kinds == built.kinds && model.kind == built.kind);
+    EXPECT_TRUE(model.links == built.links && model.row_start == built.row_start && model.row_other == built.row_other &&
+                model.row_link == built.row_link && model.by_place == built.by_place);
+    EXPECT_EQ(model.fibres[0].advancing_angle, built.fibres[0].advancing_angle);
+    EXPECT_EQ(model.fibres[0].receding_angle, built.fibres[0].receding_angle);
+    EXPECT_EQ(model.params.crossing_factor, built.params.crossing_factor);
+    EXPECT_EQ(model.liquid.viscosity, built.liquid.viscosity);
+    EXPECT_EQ(r.world.textiles[0].faces->cos_advancing, anew.textiles[0].faces->cos_advancing);
+    EXPECT_EQ(r.world.textiles[0].faces->cos_receding, anew.textiles[0].faces->cos_receding);
+  }
 }
 
 TEST(LiveChange, ReplayOfTheLogEndsInTheSameBits) {

@@ -65,6 +65,22 @@ for (let i = 1; i <= 20; ++i) {
   steps.push(first.done.step - first.done.arrived + 1);  // the step under way when it came, and the one that it changes
 }
 console.log(`a change is in the physics ${mean(steps).toFixed(1)} steps after it came (at most ${Math.max(...steps)}); its answer takes ${mean(took).toFixed(0)} ms`);
+
+// One that is dragged: twenty values a second, as the page sends them; what frames do meanwhile.
+for (const [name, value] of [['air.humidity', (i) => `${40 + (i % 40)} %`], ['textiles[0].contact_angle', (i) => `${30 + (i % 40)} deg`]]) {
+  const gaps = [], begun = performance.now(), from = first.frames, taken = first.count('changed'), made = first.value('steps');
+  let last = begun, seen = first.frames;
+  for (let i = 0; i < 60; ++i) {
+    first.send({ type: 'set', assign: [`${name}=${value(i)}`] });
+    for (const end = begun + 50 * (i + 1); performance.now() < end;) {
+      await wait(1);
+      if (first.frames > seen) gaps.push(performance.now() - last), last = performance.now(), seen = first.frames;
+    }
+  }
+  const s = (performance.now() - begun) / 1000;
+  console.log(`${name} dragged for ${s.toFixed(1)} s: ${first.count('changed') - taken} changes taken, ${((first.value('steps') - made) / s).toFixed(0)} steps/s, ` +
+    `${((first.frames - from) / s).toFixed(1)} frames/s, longest time without one ${Math.max(...gaps).toFixed(0)} ms`);
+}
 first.close();
 if (process.env.IMBIBE_MEASURE_PAGE) {
   const browser = await openBrowser(), asked = performance.now();

@@ -52,14 +52,6 @@ void Session::post(Command command) {
   {
     const std::scoped_lock hold(lock_);
     if (commands_.size() >= most_commands) return outlet.tell(command.viewer, error_event(setup_.swatch, "busy", "too many commands are waiting"));
-    // A slider that is dragged: only its last value counts.
-    if (auto* now = std::get_if<SetMessage>(&command.message.body); now && !commands_.empty()) {
-      auto* last = std::get_if<SetMessage>(&commands_.back().message.body);
-      const auto path = [](const SetMessage& m) { return m.assignments[0].substr(0, m.assignments[0].find('=')); };
-      if (last && !last->restart && !now->restart && last->assignments.size() == 1 && now->assignments.size() == 1 &&
-          commands_.back().viewer == command.viewer && commands_.back().message.ask == 0 && path(*last) == path(*now))
-        commands_.pop_back();
-    }
     commands_.push_back(std::move(command));
   }
   woken_.notify_one();
@@ -248,13 +240,7 @@ bool Session::between_steps(World& world, Real& until) {
       todo.swap(commands_);
       if (quit_asked_) quit_ = stop_ = true;
     }
-    while (!todo.empty() && !stop_) {
-      const Command& command = todo.front();
-      changed = handle(command) || changed;
-      if (command.message.ask != 0)
-        outlet.tell(command.viewer, done_event(setup_.swatch, command.message.ask, command.arrived_at_step, world_.step, world_.time));
-      todo.pop_front();
-    }
+    while (!todo.empty() && !stop_) changed = handle_next(todo) || changed;
     if (stop_) {  // what else was asked is for the world to come
       const std::scoped_lock hold(lock_);
       commands_.insert(commands_.begin(), std::make_move_iterator(todo.begin()), std::make_move_iterator(todo.end()));

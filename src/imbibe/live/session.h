@@ -46,6 +46,11 @@ class Session final : public Feed {
   void keep_pace_with(std::shared_ptr<const std::atomic<Real>> other);
   std::shared_ptr<const std::atomic<Real>> time_reached() const { return time_reached_; }
 
+  struct Change {
+    std::uint64_t viewer = all_viewers;
+    std::vector<std::string> assignments;
+  };
+
  private:
   using Clock = std::chrono::steady_clock;
 
@@ -62,8 +67,9 @@ class Session final : public Feed {
   void rebase() { pace_wall_ = Clock::now(), pace_time_ = world_.time; }
 
   // Commands, each in the session's thread. True: the world was changed.
+  bool handle_next(std::deque<Command>& todo);
   bool handle(const Command& command);
-  bool change(std::uint64_t viewer, const std::vector<std::string>& assignments);
+  bool change(const std::vector<Change>& changes);
   bool drop(std::uint64_t viewer, const DropMessage& message);
   void restart(std::uint64_t viewer, Scene scene);
   void restart_with(std::uint64_t viewer, const std::vector<std::string>& assignments);

@@ -16,7 +16,7 @@ bool Session::handle(const Command& command) {
   const std::uint64_t viewer = command.viewer;
   const auto& body = command.message.body;
   if (const auto* set = std::get_if<SetMessage>(&body)) {
-    if (!set->restart) return change(viewer, set->assignments);
+    if (!set->restart) return change({{viewer, set->assignments}});
     restart_with(viewer, set->assignments);
   } else if (const auto* drop_message = std::get_if<DropMessage>(&body)) {
     return drop(viewer, *drop_message);
@@ -59,19 +59,76 @@ bool Session::handle(const Command& command) {
 }
 
 std::string Session::change_event(std::uint64_t viewer, const std::vector<std::string>& assignments) const {
-  Json json{{"type", "changed"},   {"swatch", setup_.swatch},  {"viewer", viewer},
-            {"set", assignments},  {"step", world_.step},      {"time", world_.time},
-            {"duration", scene_.duration}};
-  json["controls"] = Json::parse(controls_json(scene_, world_, *setup_.library));
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const Json json{{"type", "changed"},  {"swatch", setup_.swatch}, {"viewer", viewer},           {"set", assignments},
+                  {"step", world_.step}, {"time", world_.time},     {"duration", scene_.duration}};
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.back() = ',';
+  return text + "\"controls\":" + controls_json(scene_, world_, *setup_.library) + "}";
 }
 
-bool Session::change(std::uint64_t viewer, const std::vector<std::string>& assignments) {
+namespace {
+
+std::string path_of(const std::string& assignment) { return assignment.substr(0, assignment.find('=')); }
+
+bool same_viewer_and_live(const Command& a, const Command& b) {
+  const auto live = [](const Command& c) {
+    const auto* set = std::get_if<SetMessage>(&c.message.body);
+    return set && !set->restart && std::all_of(set->assignments.begin(), set->assignments.end(), [](const std::string& s) {
+      return effect_of(path_of(s)) == Effect::next_step;
+    });
+  };
+  return a.viewer == b.viewer && live(a) && live(b);
+}
+
+// One after the other; of a value that is set twice only the last counts.
+std::vector<std::string> joined(const std::vector<Session::Change>& changes) {
+  std::vector<std::string> all;
+  for (const Session::Change& change : changes)
+    for (const std::string& assignment : change.assignments) {
+      std::erase_if(all, [&](const std::string& earlier) { return path_of(earlier) == path_of(assignment); });
+      all.push_back(assignment);
+    }
+  return all;
+}
+
+}  // namespace
+
+// The commands at the head of the queue; changes that wait there together are one change of the world.
+bool Session::handle_next(std::deque<Command>& todo) {
+  std::size_t count = 1;
+  while (count < todo.size() && same_viewer_and_live(todo.front(), todo[count])) ++count;
+  bool changed = false;
+  if (count == 1) {
+    changed = handle(todo.front());
+  } else {
+    std::vector<Change> changes;
+    for (std::size_t i = 0; i < count; ++i)
+      changes.push_back({todo[i].viewer, std::get<SetMessage>(todo[i].message.body).assignments});
+    changed = change(changes);
+  }
+  for (; count > 0; --count) {
+    const Command& command = todo.front();
+    if (command.message.ask != 0)
+      outlet.tell(command.viewer, done_event(setup_.swatch, command.message.ask, command.arrived_at_step, world_.step, world_.time));
+    todo.pop_front();
+  }
+  return changed;
+}
+
+bool Session::change(const std::vector<Change>& changes) {
+  const std::uint64_t viewer = changes.front().viewer;
   if (failed_) return outlet.tell(viewer, error_event(setup_.swatch, "set", "the simulation has failed: reset it first")), false;
+  const std::vector<std::string> assignments = joined(changes);
   try {
-    refuse_new_files(read_scene_text(write_scene(scene_), "the scene", assignments), scene_);
-    apply_change(scene_, world_, *setup_.library, assignments);
+    Scene changed = changed_scene(scene_, assignments);
+    refuse_new_files(changed, scene_);
+    apply_change(scene_, world_, *setup_.library, std::move(changed));
   } catch (const InputError& error) {
+    if (changes.size() > 1) {  // the good ones of them
+      bool any = false;
+      for (const Change& one : changes) any = change({one}) || any;
+      return any;
+    }
     outlet.tell(viewer, error_event(setup_.swatch, "set", error.problems()));
     // The page shows what it asked for: tell it what holds.
     outlet.tell(viewer, change_event(viewer, {}));
@@ -104,7 +161,7 @@ bool Session::drop(std::uint64_t viewer, const DropMessage& message) {
       "liquid.drops[{}]={{name: dropped by hand {}, centre: [{}, {}, {}], volume: {} m3, velocity: [{}, {}, {}], start: {}}}",
       scene_.liquid.drops.size(), scene_.liquid.drops.size() + 1, centre.x, centre.y, centre.z, message.volume,
       velocity.x, velocity.y, velocity.z, world_.time);
-  return change(viewer, {assignment});
+  return change({{viewer, {assignment}}});
 }
 
 void Session::restart(std::uint64_t viewer, Scene scene) {

@@ -9,7 +9,9 @@
 #include "imbibe/core/portable.h"
 #include "imbibe/core/quantity.h"
 #include "imbibe/scene/cloth_builder.h"
+#include "imbibe/scene/describe_writer.h"
 #include "imbibe/scene/placement_checks.h"
+#include "imbibe/scene/textile_builder.h"
 
 namespace imbibe {
 namespace {
@@ -59,25 +61,6 @@ Real releases(const Source& s, Real duration) {
   return std::min(static_cast<Real>(s.count), std::floor((duration - s.start) / s.interval) + 1);
 }
 
-Placement placement_of(const TextileSpec& spec) {
-  Placement p;
-  p.origin = spec.centre;
-  p.u = normalized(spec.weft_direction);
-  p.v = normalized(spec.warp_direction);
-  p.n = cross(p.u, p.v);
-  return p;
-}
-
-// A textile's own contact angle replaces that of all its fibres, so that every part that asks a fibre sees it.
-void set_contact_angles(const TextileSpec& spec, Fabric& fabric) {
-  for (YarnType& type : fabric.network.yarn_types) {
-    Fibre& fibre = type.fibre;
-    if (spec.contact_angle) fibre.advancing_angle = *spec.contact_angle;
-    fibre.receding_angle = spec.receding_angle.value_or(fibre.receding_angle);
-    fibre.receding_angle = std::min(fibre.receding_angle, fibre.advancing_angle);
-  }
-}
-
 void add_at(const Scene& scene, const InputError& error, std::vector<Problem>& problems, const std::string& key = "") {
   for (const Problem& problem : error.problems()) {
     if (problem.file.empty()) {
@@ -89,7 +72,7 @@ void add_at(const Scene& scene, const InputError& error, std::vector<Problem>& p
   }
 }
 
-void add_textile(const Scene& scene, std::size_t i, const Library& library, World& world,
+void add_textile(const Scene& scene, std::size_t i, const Library& library, const RunningWorld* running, World& world,
                  std::vector<Problem>& problems) {
   const TextileSpec& spec = scene.textiles[i];
   const std::string key = fmt::format("textiles[{}]", i);
@@ -101,71 +84,41 @@ void add_textile(const Scene& scene, std::size_t i, const Library& library, Worl
     if (spec.sheet.soft && spec.sheet.is_soft() && spec.sheet.soft->mesh)
       throw InputError({Problem{.key = key + ".sheet.soft.mesh",
                                 .message = "a sheet from a mesh takes `wetting: cells`: yarns are woven into rectangles only"}});
-    auto fabric = std::make_shared<Fabric>(build_fabric(spec.fabric, library.fibres, key));
-    set_contact_angles(spec, *fabric);
-    Textile textile;
-    textile.name = spec.name;
-    textile.placement = placement_of(spec);
-    textile.fabric = std::move(fabric);
-    world.textiles.push_back(std::move(textile));
+    world.textiles.push_back(woven_textile(spec, library.fibres, key, running_textile(running, i)));
   } catch (const InputError& error) {
     add_at(scene, error, problems);
   }
 }
 
-// What `start` says, in place of conditioned fibres without liquid between them.
-Contents starting_contents(const StartSpec& start, const YarnNetwork& network, const WettingModel& model, Air air) {
-  if (start.humidity) air.humidity = *start.humidity;
-  Contents contents = conditioned_contents(model, air);
-  for (std::size_t node = 0; node < network.nodes(); ++node) {
-    Real held = network.is_pore(node) ? start.pores : start.yarns;
-    const Vec3& x = network.node_centre(node);
-    for (const SpotSpec& spot : start.spots) {
-      const Real u = 2 * (x.x - spot.centre[0]) / spot.size[0], v = 2 * (x.y - spot.centre[1]) / spot.size[1];
-      const bool inside = spot.round ? u * u + v * v <= 1 : std::abs(u) <= 1 && std::abs(v) <= 1;
-      if (inside) held = network.is_pore(node) ? spot.pores : spot.yarns;
-    }
-    contents.liquid_kg[node] = held * model.liquid.density * current_volume(model, contents, node);
-    if (!contents.reached_saturation.empty()) contents.reached_saturation[node] = held;
-  }
-  return contents;
-}
-
 // i: of the scene's textiles; index: of the world's.
-void add_wetting(const Scene& scene, std::size_t i, std::size_t index, World& world, std::vector<Problem>& problems) {
+void add_wetting(const Scene& scene, std::size_t i, std::size_t index, const RunningWorld* running, World& world,
+                 std::vector<Problem>& problems) {
+  const TextileSpec& spec = scene.textiles[i];
   Textile& textile = world.textiles[index];
-  const YarnNetwork& network = textile.fabric->network;
-  const LiquidKind& kind = world.liquid.kind;
+  const std::string key = fmt::format("textiles[{}]", i);
   try {
-    const WettingLiquid liquid{.density = kind.density, .viscosity = kind.viscosity,
-                               .surface_tension = kind.surface_tension};
-    textile.model = std::make_shared<const WettingModel>(
-        build_wetting_model(network, scene.textiles[i].wetting.network, liquid));
-    textile.contents = starting_contents(scene.textiles[i].start, network, *textile.model, world.air);
-    for (std::size_t r = 0; r < scene.textiles[i].reservoirs.size(); ++r) {
+    set_wetting(spec, world, textile, running_textile(running, i));
+    for (std::size_t r = 0; r < spec.reservoirs.size(); ++r) {
       try {
-        textile.reservoirs.push_back(make_reservoir(scene.textiles[i].reservoirs[r], network));
+        textile.reservoirs.push_back(make_reservoir(spec.reservoirs[r], textile.fabric->network));
       } catch (const InputError& error) {
-        add_at(scene, error, problems, fmt::format("textiles[{}].reservoirs[{}]", i, r));
+        add_at(scene, error, problems, fmt::format("{}.reservoirs[{}]", key, r));
       }
     }
-    const Real spacing = world.liquid.particle_mass > 0 ? world.liquid.spacing() : 0;
-    textile.faces = std::make_shared<const FaceMap>(build_face_map(network, spacing));
-    textile.contact = scene.textiles[i].contact;
-    textile.yarn_boxes = std::make_shared<const YarnContactIndex>(build_contact_index(network));
-    textile.exchange.waiting_kg.assign(network.nodes(), 0);
-    if (scene.textiles[i].sheet.is_soft()) textile.cloth = build_network_cloth(scene, i, textile, world.air);
+    if (spec.sheet.is_soft()) textile.cloth = build_network_cloth(scene, i, textile, world.air);
   } catch (const InputError& error) {
-    add_at(scene, error, problems, fmt::format("textiles[{}].wetting", i));
+    add_at(scene, error, problems, key + ".wetting");
   }
 }
 
-void add_solid(const Scene& scene, std::size_t i, World& world, std::vector<Problem>& problems) {
+void add_solid(const Scene& scene, std::size_t i, const RunningWorld* running, World& world, std::vector<Problem>& problems) {
   const SolidSpec& spec = scene.solids[i];
   try {
     SolidBody body;
     body.name = spec.name;
-    body.shape = make_shape(spec.shape);
+    const bool shared = running && i < running->scene.solids.size() && i < running->world.solids.size() &&
+                        write_described(spec.shape) == write_described(running->scene.solids[i].shape);
+    body.shape = shared ? running->world.solids[i].shape : make_shape(spec.shape);  // a mesh is read once
     body.material.contact_angle = spec.contact_angle;
     body.material.receding_angle = spec.receding_angle.value_or(-1);
     body.material.friction = spec.friction;
@@ -316,7 +269,7 @@ RunPlan run_plan(const Scene& scene) {
   return plan;
 }
 
-World build_world(const Scene& scene, const Library& library, const std::function<void(World&)>& continue_sources) {
+World build_world(const Scene& scene, const Library& library, const RunningWorld* running) {
   std::vector<Problem> problems;
   World world;
   world.liquid.kind = liquid_of(scene, library, problems);
@@ -335,14 +288,14 @@ World build_world(const Scene& scene, const Library& library, const std::functio
   world.air = {scene.air.temperature, scene.air.humidity, scene.air.mass_transfer};
   world.liquid_params = scene.liquid.solver;
   world.sources = sources_of(scene);
-  if (continue_sources) continue_sources(world);
-  for (std::size_t i = 0; i < scene.textiles.size(); ++i) add_textile(scene, i, library, world, problems);
-  for (std::size_t i = 0; i < scene.solids.size(); ++i) add_solid(scene, i, world, problems);
+  for (std::size_t i = 0; i < scene.textiles.size(); ++i) add_textile(scene, i, library, running, world, problems);
+  for (std::size_t i = 0; i < scene.solids.size(); ++i) add_solid(scene, i, running, world, problems);
   try {
     add_pipes(scene, world);
   } catch (const InputError& error) {
     add_at(scene, error, problems);
   }
+  if (running) running->continue_sources(world);
   const bool all_built = problems.empty() && world.textiles.size() + world.cell_cloths.size() == scene.textiles.size() && world.solids.size() == scene.solids.size();
   if (all_built) {
     world.domain = default_domain(world);
@@ -353,7 +306,7 @@ World build_world(const Scene& scene, const Library& library, const std::functio
   }
   if (!problems.empty()) throw InputError(std::move(problems));
   for (std::size_t i = 0, index = 0; i < scene.textiles.size(); ++i)
-    if (!scene.textiles[i].wetting.is_cells()) add_wetting(scene, i, index++, world, problems);
+    if (!scene.textiles[i].wetting.is_cells()) add_wetting(scene, i, index++, running, world, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
   for (const Textile& textile : world.textiles)
     world.ledger.initial_kg += total_sorbed_kg(*textile.model, textile.contents) +

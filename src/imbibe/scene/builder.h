@@ -15,6 +15,15 @@
 
 namespace imbibe {
 
+// The world that a changed scene goes on from (scene/live_change.h).
+struct RunningWorld {
+  const Scene& scene;
+  const World& world;
+  // Brings the new world's sources to where the running ones are, before placements are checked: what has fallen already
+  // needs no room.
+  std::function<void(World&)> continue_sources;
+};
+
 // What a scene will need, from its counts alone.
 struct SceneEstimate {
   double particles = 0;          // at most, all drops of all droppers
@@ -45,9 +54,8 @@ void add_pipes(const Scene& scene, World& world);
 // How to step it: to the scene's end, with its output times and limits.
 RunPlan run_plan(const Scene& scene);
 
-// `continue_sources`, when given, brings the new world's sources to where those of a running one are, before placements
-// are checked: what has fallen already needs no room (scene/live_change.h).
-World build_world(const Scene& scene, const Library& library,
-                  const std::function<void(World&)>& continue_sources = nullptr);
+// `running`, when given: a world that the new one goes on from. Fabrics, models and meshes that are the same are shared
+// with it (equal to the bit to what would be built).
+World build_world(const Scene& scene, const Library& library, const RunningWorld* running = nullptr);
 
 }  // namespace imbibe

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -93,22 +95,33 @@ struct Carry {
   }
 };
 
-// A source goes on where it was. A dropper whose interval is changed drops next when it would have, or one new interval
-// from now, whichever is sooner: never a burst of drops that are overdue by the new interval.
+// A source goes on where it was. A dropper (or a pipe) whose interval is changed gives next when it would have, or one new
+// interval from now, whichever is sooner: never a burst of drops that are overdue by the new interval.
+void go_on(const Source& old, Real now, Source& source) {
+  source.emitted = old.emitted, source.carried = old.carried, source.supplied_kg = old.supplied_kg;
+  if (old.emitted > 0 && source.interval != old.interval) {
+    const Real due = old.start + old.emitted * old.interval;
+    source.start = std::clamp(due, now, now + source.interval) - old.emitted * source.interval;
+  } else {
+    source.start = old.emitted > 0 ? old.start : source.start;
+  }
+}
+
+// A pipe runs to its end in time, with however many particles at its rate from now on.
+void go_on_to_its_end(const PipeSpec& pipe, Real duration, Source& source) {
+  const Real end = std::min(pipe.stop.value_or(duration), duration), due = source.start + source.emitted * source.interval;
+  const Real more = std::floor((end - due) / source.interval + 1e-9) + 1;
+  source.count = static_cast<int>(std::clamp<Real>(source.emitted + more, source.emitted, std::numeric_limits<int>::max()));
+}
+
 void carry_sources(const Scene& before, const World& running, const Scene& after, World& next) {
+  const std::size_t first_pipe = next.sources.size() - after.liquid.pipes.size();
   for (std::size_t i = 0; i < next.sources.size(); ++i) {
     const std::string key = key_of_source(after, i);
     for (std::size_t k = 0; k < running.sources.size(); ++k) {
       if (key_of_source(before, k) != key) continue;
-      const Source& old = running.sources[k];
-      Source& source = next.sources[i];
-      source.emitted = old.emitted, source.carried = old.carried, source.supplied_kg = old.supplied_kg;
-      if (old.emitted > 0 && source.interval != old.interval) {
-        const Real due = old.start + old.emitted * old.interval;
-        source.start = std::clamp(due, running.time, running.time + source.interval) - old.emitted * source.interval;
-      } else {
-        source.start = old.emitted > 0 ? old.start : source.start;
-      }
+      go_on(running.sources[k], running.time, next.sources[i]);
+      if (i >= first_pipe) go_on_to_its_end(after.liquid.pipes[i - first_pipe], after.duration, next.sources[i]);
     }
   }
 }
@@ -126,8 +139,8 @@ void expel(Textile& textile) {
 }
 
 World carried_world(const Scene& before, const World& running, const Scene& after, const Library& library) {
-  const auto continue_sources = [&](World& next) { carry_sources(before, running, after, next); };
-  World next = build_world(after, library, continue_sources);
+  const RunningWorld from{before, running, [&](World& next) { carry_sources(before, running, after, next); }};
+  World next = build_world(after, library, &from);
   Fields fields;
   visit_state(fields, running);
   Carry carry{fields};
@@ -156,7 +169,7 @@ Effect effect_of(const std::string& path) {
   return in(never_live) ? Effect::never : in(only_at_restart) ? Effect::restart : Effect::next_step;
 }
 
-void apply_change(Scene& scene, World& world, const Library& library, const std::vector<std::string>& assignments) {
+Scene changed_scene(const Scene& scene, const std::vector<std::string>& assignments) {
   std::vector<Problem> problems;
   for (const std::string& assignment : assignments) {
     const std::string path = assignment.substr(0, assignment.find('='));
@@ -168,10 +181,17 @@ void apply_change(Scene& scene, World& world, const Library& library, const std:
                                                       : "is of files and pictures: the simulation does not follow it"});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
-  Scene next = read_scene_text(write_scene(scene), "the running scene", assignments);
-  World changed = carried_world(scene, world, next, library);
-  scene = std::move(next);
-  world = std::move(changed);
+  return read_scene_text(write_scene(scene), "the running scene", assignments);
+}
+
+void apply_change(Scene& scene, World& world, const Library& library, Scene changed) {
+  World next = carried_world(scene, world, changed, library);
+  scene = std::move(changed);
+  world = std::move(next);
+}
+
+void apply_change(Scene& scene, World& world, const Library& library, const std::vector<std::string>& assignments) {
+  apply_change(scene, world, library, changed_scene(scene, assignments));
 }
 
 std::string change_line(const LoggedChange& change) {

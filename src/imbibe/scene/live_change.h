@@ -2,7 +2,8 @@
 //
 // The scene with the change is read and checked as any scene, the world is built from it, and the state of the running
 // world is carried over: whatever the scene builds (angles, models, solver settings, air, gravity, sources) is new,
-// whatever the steps made (sim/state_fields.h) is kept, and so every liquid's mass. What a material of new fibres cannot
+// whatever the steps made (sim/state_fields.h) is kept, and so every liquid's mass. Fabrics, models and meshes that the
+// change leaves alone are shared with the running world (textile_builder.h): equal to the bit, and no stall. What a material of new fibres cannot
 // hold is expelled: water above the new fibres' greatest regain, and liquid in yarns that no longer wet, go to the
 // yarn's faces, where they become drops.
 // A change that would alter the size or meaning of the state (counts, resolution, sorption shells) is refused: it takes
@@ -35,6 +36,12 @@ enum class Effect {
 // By path alone. What is not named in the list behind this takes effect at the next step, unless apply_change finds
 // that it does not fit the state.
 Effect effect_of(const std::string& path);
+
+// The scene with the assignments, or an InputError with every problem.
+Scene changed_scene(const Scene& scene, const std::vector<std::string>& assignments);
+
+// Goes on with the changed scene, or throws and leaves both as they were.
+void apply_change(Scene& scene, World& world, const Library& library, Scene changed);
 
 // Applies the assignments to both, or throws InputError with every problem and leaves both as they were. An index one
 // past the end of a list appends: `liquid.drops[2]={centre: ..., volume: ...}`.

@@ -140,7 +140,9 @@ std::string key_of_source(const Scene& scene, std::size_t i) {
   if (i < liquid.drops.size()) return fmt::format("liquid.drops[{}]", i);
   i -= liquid.drops.size();
   if (i < liquid.boxes.size()) return fmt::format("liquid.boxes[{}]", i);
-  return fmt::format("liquid.droppers[{}]", i - liquid.boxes.size());
+  i -= liquid.boxes.size();
+  if (i < liquid.droppers.size()) return fmt::format("liquid.droppers[{}]", i);
+  return fmt::format("liquid.pipes[{}]", i - liquid.droppers.size());
 }
 
 void check_placements(const Scene& scene, const World& world, std::vector<Problem>& problems) {

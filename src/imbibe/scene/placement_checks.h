@@ -15,7 +15,7 @@ Bounds bounds_of_sheet(const Textile& textile);
 // Distance of a point to the slab of a textile, m; < 0 inside.
 Real distance_to_sheet(const Textile& textile, const Vec3& point);
 
-// The key of source `i` of sources_of(scene), e.g. liquid.drops[1].
+// The key of a world's source `i`, e.g. liquid.drops[1].
 std::string key_of_source(const Scene& scene, std::size_t i);
 
 void check_placements(const Scene& scene, const World& world, std::vector<Problem>& problems);

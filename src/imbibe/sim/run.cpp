@@ -23,7 +23,11 @@ RunEnd run(World& world, const RunPlan& plan, const RunHooks& hooks) {
   const std::uint64_t first_step = world.step;
   Real until = plan.until;
   for (;;) {
-    if (hooks.before_step && hooks.before_step(world, until)) scratch = StepScratch{};
+    if (hooks.before_step && hooks.before_step(world, until)) {
+      auto networks = std::move(scratch.textiles);  // these know which model they are of
+      scratch = {};
+      scratch.textiles = std::move(networks);
+    }
     if (hooks.stop_requested && hooks.stop_requested()) return world.time < until ? RunEnd::stopped : RunEnd::finished;
     if (world.time >= until) return RunEnd::finished;
     options.until = next_output(world.time, plan.every, until);

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <fmt/format.h>
 
 #include "imbibe/core/error.h"
@@ -468,14 +467,18 @@ void build_rows(WettingModel& m, const std::vector<NumberedLink>& found) {
 }
 
 void order_by_place(WettingModel& m, const YarnNetwork& network) {
-  std::vector<std::pair<Real, Index>> rows;  // pitch row
+  struct Place {
+    Real row, x;  // row: of pitches
+    Index node;
+    auto operator<=>(const Place&) const = default;
+  };
+  std::vector<Place> places;
+  places.reserve(m.nodes());
   const Real pitch = network.pitch_y > 0 ? network.pitch_y : network.thickness;
-  for (Index i = 0; i < m.nodes(); ++i) rows.emplace_back(std::floor(m.centre[i].y / pitch + 1e-6), i);
-  std::sort(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
-    const auto key = [&](const auto& r) { return std::tuple{r.first, m.centre[r.second].x, r.second}; };
-    return key(a) < key(b);
-  });
-  for (const auto& row : rows) m.by_place.push_back(row.second);
+  for (Index i = 0; i < m.nodes(); ++i) places.push_back({std::floor(m.centre[i].y / pitch + 1e-6), m.centre[i].x, i});
+  std::sort(places.begin(), places.end());
+  m.by_place.reserve(m.nodes());
+  for (const Place& place : places) m.by_place.push_back(place.node);
 }
 
 }  // namespace
