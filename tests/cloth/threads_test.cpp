@@ -38,7 +38,7 @@ OneThread crooked_thread(Index count) {
   }
   t.held.assign(count, {});
   t.stretch.first.push_back(t.stretch.pieces.size()), t.bend.first.push_back(t.bend.pieces.size());
-  t.stretch.weft_threads = t.bend.weft_threads = 1;
+  t.stretch.families = t.bend.families = {0, 1};
   return t;
 }
 

@@ -117,6 +117,31 @@ TEST(SheetTopology, pieces_of_one_colour_share_no_node) {
   }
 }
 
+TEST(SheetTopology, lines_of_springs_of_one_family_share_no_node_and_hold_every_spring_of_a_grid_once) {
+  const Sheet sheet = grid_sheet(7);
+  const auto& list = make_topology(sheet).spring_threads;
+  std::set<std::set<Index>> springs;
+  ASSERT_EQ(list.families.size(), 7u);
+  EXPECT_EQ(list.families.back(), list.size());
+  for (std::size_t f = 0; f + 1 < list.families.size(); ++f) {
+    std::set<Index> seen;
+    for (std::size_t t = list.families[f]; t < list.families[f + 1]; ++t) {
+      std::set<Index> line;
+      for (std::size_t k = list.first[t]; k < list.first[t + 1]; ++k) {
+        const auto [a, b] = list.pieces[k].node;
+        EXPECT_TRUE(springs.insert({a, b}).second);
+        if (k > list.first[t]) {
+          EXPECT_EQ(list.pieces[k - 1].node[1], a);
+        }
+        line.insert({a, b});
+      }
+      for (const Index i : line) EXPECT_TRUE(seen.insert(i).second);
+    }
+  }
+  const std::size_t n = sheet.columns, m = sheet.rows;  // structural, shear and flexion springs
+  EXPECT_EQ(springs.size(), n * (m - 1) + m * (n - 1) + 2 * (n - 1) * (m - 1) + n * (m - 2) + m * (n - 2));
+}
+
 TEST(SheetTopology, a_wild_mesh_with_more_pieces_at_a_node_than_a_word_has_bits_is_coloured) {
   // A fan of 100 triangles about one node.
   TriangleMesh mesh;

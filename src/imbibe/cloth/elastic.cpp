@@ -10,11 +10,6 @@ namespace {
 constexpr std::size_t tile = 1024;
 constexpr Real shear_weight = 0.25;  // an angle of four times a strain shows as little (1 deg against 0.5 %)
 
-// What a piece counts in averages over the cloth; springs of one sheet count alike.
-Real area_of(const SpringPiece&) { return 1; }
-template <std::size_t N>
-Real area_of(const StretchPiece<N>& piece) { return piece.area; }
-
 // Calls solve(piece, its number, outcome of its tile) for every piece, colour by colour; adds the outcomes.
 template <class Piece, class Solve>
 PassOutcome pass(const PieceList<Piece>& list, std::vector<PassOutcome>& tiles, Solve&& solve) {
@@ -61,9 +56,9 @@ void update_materials(const Sheet& sheet, const SheetTopology& t, const ClothPar
   if (params.model == ClothModel::provot) {
     const ProvotParams& p = params.provot;
     const Real constants[]{p.structural, p.shear, p.flexion};
-    fill(sheet, params, t.springs.pieces, m.springs, [&](const SpringPiece& s) {
-      return constants[static_cast<std::size_t>(s.kind)] * s.rest * s.rest;
-    });
+    const auto spring = [&](const SpringPiece& s) { return constants[static_cast<std::size_t>(s.kind)] * s.rest * s.rest; };
+    fill(sheet, params, t.spring_threads.pieces, m.spring_threads, spring);
+    fill(sheet, params, t.springs.pieces, m.springs, spring);
   } else {
     const auto stretch = [&](const auto& s) { return s.area * (s.warp ? hand.stretch_warp : hand.stretch_weft); };
     const auto shear = [&](const auto& s) { return s.area * hand.shear; };
@@ -96,12 +91,35 @@ void solve_bending(const SheetTopology& t, const ClothParams& params, const Node
 void begin_in_plane(const SheetTopology& t, const ClothParams& params, ElasticWork& work) {
   if (params.model == ClothModel::provot) {
     work.given_stretch.assign(t.springs.pieces.size(), 0);
+    begin_thread_stretch(t.spring_threads, work.threads);
     return;
   }
   work.given_stretch.assign(t.triangle_stretch.pieces.size(), 0);
   work.given_cell_shear.assign(t.cell_shear.pieces.size(), 0);
   work.given_triangle_shear.assign(t.triangle_shear.pieces.size(), 0);
   begin_thread_stretch(t.thread_stretch, work.threads);
+}
+
+void begin_in_balance(const SheetTopology& t, const ClothParams& params, const NodeMotion& nodes, Real dt,
+                      ElasticWork& work) {
+  const auto hold = [&](const auto& pieces, const std::vector<PieceMaterial>& materials, std::vector<Real>& given, auto&& strain) {
+    given.resize(pieces.size());
+    parallel_for(pieces.size(), [&](std::size_t k) { given[k] = -dt * materials[k].stiffness * strain(pieces[k]); });
+  };
+  const auto stretch = [&](const auto& piece) { return norm(linear_form(nodes.position, piece.node, piece.weight)) - 1; };
+  const auto shear = [&](const auto& piece) {
+    return dot(normalized(linear_form(nodes.position, piece.node, piece.weft)),
+               normalized(linear_form(nodes.position, piece.node, piece.warp)));
+  };
+  if (params.model == ClothModel::provot) {
+    hold(t.springs.pieces, work.springs, work.given_stretch, stretch);
+    begin_balanced_stretch(t.spring_threads, work.spring_threads, nodes.position, dt, work.threads);
+    return;
+  }
+  hold(t.triangle_stretch.pieces, work.triangle_stretch, work.given_stretch, stretch);
+  hold(t.cell_shear.pieces, work.cell_shear, work.given_cell_shear, shear);
+  hold(t.triangle_shear.pieces, work.triangle_shear, work.given_triangle_shear, shear);
+  begin_balanced_stretch(t.thread_stretch, work.thread_stretch, nodes.position, dt, work.threads);
 }
 
 InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params, const NodeMotion& nodes, Real dt,
@@ -114,10 +132,14 @@ InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params,
     };
   };
   if (params.model == ClothModel::provot) {
+    // Lines of springs cross each other far more closely than threads: their changes count as those of relaxation.
     all.relaxed = pass(t.springs, work.tiles, stretch(work.springs));
+    all.relaxed += solve_thread_stretch(t.spring_threads, work.spring_threads, nodes, dt, work.threads);
+    all.threads.turn = all.relaxed.turn;
     pass(t.springs, work.tiles, [&](const SpringPiece& piece, std::size_t, PassOutcome&) {
       if (piece.kind != SpringKind::flexion) correct_stretch(piece, nodes, params.provot.limit, dt);
     });
+    correct_threads(t.spring_threads, nodes, params.provot.limit, dt);
     return all;
   }
   const auto shear = [&](const std::vector<PieceMaterial>& materials, std::vector<Real>& given) {
@@ -140,7 +162,8 @@ Real stored_energy(const Sheet& sheet, const SheetTopology& t, const ElasticWork
     const Real strain = norm(linear_form(x, piece.node, piece.weight)) - 1;
     return strain * strain;
   };
-  if (params.model == ClothModel::provot) return energy_of(t.springs.pieces, m.springs, stretch);
+  if (params.model == ClothModel::provot)
+    return energy_of(t.spring_threads.pieces, m.spring_threads, stretch) + energy_of(t.springs.pieces, m.springs, stretch);
   const auto shear = [&](const auto& piece) {
     const Real cosine = dot(normalized(linear_form(x, piece.node, piece.weft)),
                             normalized(linear_form(x, piece.node, piece.warp)));
@@ -168,7 +191,8 @@ Real greatest_strain(const Sheet& sheet, const SheetTopology& t, const ClothPara
     });
   };
   if (params.model == ClothModel::provot) {
-    return greatest(t.springs.pieces, [](const SpringPiece& s) { return s.kind == SpringKind::structural; });
+    const auto structural = [](const SpringPiece& s) { return s.kind == SpringKind::structural; };
+    return std::max(greatest(t.spring_threads.pieces, structural), greatest(t.springs.pieces, structural));
   }
   const auto all = [](const auto&) { return true; };
   return std::max(greatest(t.thread_stretch.pieces, all), greatest(t.triangle_stretch.pieces, all));

@@ -9,14 +9,15 @@ namespace imbibe {
 namespace {
 
 // One pass over the edges [first, end) of one thread: the changes of their impulses.
-PassOutcome solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_t first, std::size_t end,
-                  const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt, ThreadSolve& work) {
+template <class Piece>
+PassOutcome solve_stretch(const ThreadList<Piece>& threads, std::size_t first, std::size_t end,
+                          const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt, ThreadSolve& work) {
   // Down: directions, and elimination of the lower diagonal.
   Real upper_before = 0, change_before = 0;  // of the edge before
   Real b_before = 0;
   Vec3 direction_before;
   for (std::size_t e = first; e < end; ++e) {
-    const StretchPiece<2>& piece = threads.pieces[e];
+    const Piece& piece = threads.pieces[e];
     const auto [i, j] = piece.node;
     const Real b = piece.weight[1], wi = nodes.inverse_mass[i], wj = nodes.inverse_mass[j];
     const Vec3 rate = b * (nodes.velocity[j] - nodes.velocity[i]);
@@ -33,7 +34,7 @@ PassOutcome solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_
     work.direction[e] = direction;
     change_before = work.change[e] = side * inverse;
     if (e + 1 < end) {
-      const StretchPiece<2>& next = threads.pieces[e + 1];
+      const Piece& next = threads.pieces[e + 1];
       const Real b_next = next.weight[1];
       const Vec3 next_ahead = b_next * (nodes.position[next.node[1]] - nodes.position[next.node[0]]) +
                               (dt * b_next) * (nodes.velocity[next.node[1]] - nodes.velocity[next.node[0]]);
@@ -48,7 +49,7 @@ PassOutcome solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_
   PassOutcome outcome;
   Real after = 0;
   for (std::size_t e = end; e-- > first;) {
-    const StretchPiece<2>& piece = threads.pieces[e];
+    const Piece& piece = threads.pieces[e];
     const Real change = after = work.change[e] - (e + 1 < end ? work.upper[e] * after : 0);
     const Real b = piece.weight[1];
     const Vec3 given = (b * change) * work.direction[e];
@@ -57,7 +58,7 @@ PassOutcome solve_stretch(const ThreadList<StretchPiece<2>>& threads, std::size_
     const Real all = work.impulse[e] += change;
     const Real reach = dt * b * b * (nodes.inverse_mass[piece.node[0]] + nodes.inverse_mass[piece.node[1]]);
     outcome.turn = std::max(outcome.turn, std::abs(all) * reach);
-    outcome.add(std::abs(change) * reach, piece.area);
+    outcome.add(std::abs(change) * reach, area_of(piece));
   }
   return outcome;
 }
@@ -99,7 +100,7 @@ void solve_bend(const ThreadList<BendPiece<3>>& threads, std::size_t first, std:
   }
 }
 
-// Calls solve(thread) for all weft threads, which share no node, then for all warp threads.
+// Calls solve(thread) for all threads, family by family.
 template <class Piece, class Solve>
 void for_threads(const ThreadList<Piece>& threads, Solve&& solve) {
   const auto family = [&](std::size_t begin, std::size_t end) {
@@ -107,28 +108,56 @@ void for_threads(const ThreadList<Piece>& threads, Solve&& solve) {
     const std::size_t length = std::max<std::size_t>(1, threads.first[begin + 1] - threads.first[begin]);
     parallel_for(end - begin, [&](std::size_t k) { solve(begin + k); }, std::max<std::size_t>(1, 1024 / length));
   };
-  family(0, threads.weft_threads);
-  family(threads.weft_threads, threads.size());
+  for (std::size_t f = 0; f + 1 < threads.families.size(); ++f) family(threads.families[f], threads.families[f + 1]);
 }
 
 }  // namespace
 
-void begin_thread_stretch(const ThreadList<StretchPiece<2>>& threads, ThreadSolve& work) {
+template <class Piece>
+void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work) {
   const std::size_t n = threads.pieces.size();
   work.direction.resize(n), work.upper.resize(n), work.change.resize(n);
   work.impulse.assign(n, 0);
   work.outcome.resize(threads.size());
 }
 
-PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads,
-                                    const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt,
-                                    ThreadSolve& work) {
+template <class Piece>
+PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
+                                 const NodeMotion& nodes, Real dt, ThreadSolve& work) {
   for_threads(threads, [&](std::size_t t) {
     work.outcome[t] = solve_stretch(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work);
   });
   PassOutcome all;
   for (const PassOutcome& outcome : work.outcome) all += outcome;
   return all;
+}
+
+template <class Piece>
+void begin_balanced_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
+                            const Vec3* position, Real dt, ThreadSolve& work) {
+  begin_thread_stretch(threads, work);
+  parallel_for(threads.pieces.size(), [&](std::size_t e) {
+    const Piece& piece = threads.pieces[e];
+    work.impulse[e] = -dt * materials[e].stiffness * (norm(linear_form(position, piece.node, piece.weight)) - 1);
+  });
+}
+
+template void begin_balanced_stretch(const ThreadList<StretchPiece<2>>&, const std::vector<PieceMaterial>&, const Vec3*,
+                                     Real, ThreadSolve&);
+template void begin_balanced_stretch(const ThreadList<SpringPiece>&, const std::vector<PieceMaterial>&, const Vec3*, Real,
+                                     ThreadSolve&);
+template void begin_thread_stretch(const ThreadList<StretchPiece<2>>&, ThreadSolve&);
+template void begin_thread_stretch(const ThreadList<SpringPiece>&, ThreadSolve&);
+template PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>&, const std::vector<PieceMaterial>&,
+                                          const NodeMotion&, Real, ThreadSolve&);
+template PassOutcome solve_thread_stretch(const ThreadList<SpringPiece>&, const std::vector<PieceMaterial>&,
+                                          const NodeMotion&, Real, ThreadSolve&);
+
+void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt) {
+  for_threads(threads, [&](std::size_t t) {
+    for (std::size_t k = threads.first[t]; k < threads.first[t + 1]; ++k)
+      if (threads.pieces[k].kind != SpringKind::flexion) correct_stretch(threads.pieces[k], nodes, limit, dt);
+  });
 }
 
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,

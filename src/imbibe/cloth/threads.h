@@ -42,12 +42,20 @@ struct ThreadSolve {
   std::vector<BendRow> bend;
 };
 
-// One pass: all weft threads, then all warp threads, from where the passes before left the velocities (new directions, and
+// One pass: all weft threads, then all warp threads (family by family), from where the passes before left the velocities (new directions, and
 // what the warp and contacts did to the weft). begin_ comes before the first pass of a substep.
-void begin_thread_stretch(const ThreadList<StretchPiece<2>>& threads, ThreadSolve& work);
-PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>& threads,
-                                    const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt,
-                                    ThreadSolve& work);
+// Piece: StretchPiece<2> of the fabric, or SpringPiece.
+template <class Piece>
+void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work);
+template <class Piece>
+PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
+                                 const NodeMotion& nodes, Real dt, ThreadSolve& work);
+// Instead of begin_: the impulses that hold the strains of the places as they are, so that the passes answer to motion alone.
+template <class Piece>
+void begin_balanced_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
+                            const Vec3* position, Real dt, ThreadSolve& work);
+// Provot's correction (impulse.h) of the springs of all lines but those of flexion.
+void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt);
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
                        const NodeMotion& nodes, Real dt, ThreadSolve& work);
 

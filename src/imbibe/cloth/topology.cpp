@@ -71,7 +71,7 @@ void add_threads(const Grid& g, SheetTopology& t) {
     t.thread_stretch.first.push_back(t.thread_stretch.pieces.size());
     t.thread_bend.first.push_back(t.thread_bend.pieces.size());
   }
-  t.thread_stretch.weft_threads = t.thread_bend.weft_threads = g.rows;
+  t.thread_stretch.families = t.thread_bend.families = {0, g.rows, std::size_t{g.rows} + g.columns};
   for (Index i = 0; i < g.columns; ++i) {
     const Real width = g.du * g.column_share(i);
     for (Index j = 0; j + 1 < g.rows; ++j) stretch(g.at(i, j), g.at(i, j + 1), g.dv, width, true);
@@ -93,27 +93,48 @@ void add_cells(const Grid& g, SheetTopology& t) {
   }
 }
 
+// Springs along lines of nodes, each from its start by steps of (di, dj) to the end of the grid.
+struct SpringLines {
+  const Grid& g;
+  ThreadList<SpringPiece>& list;
+  SpringKind kind;
+  int di, dj;
+
+  void line(Index i, Index j) const {
+    const Real rest = portable::hypot(di * g.du, dj * g.dv);
+    const auto next = [](Index k, int step) { return static_cast<Index>(static_cast<int>(k) + step); };
+    for (Index a = i, b = j;;) {
+      const Index c = next(a, di), d = next(b, dj);  // beyond the first column or row it wraps to a large number
+      if (c >= g.columns || d >= g.rows) break;
+      list.pieces.push_back(make_spring(g.at(a, b), g.at(c, d), rest, kind));
+      a = c, b = d;
+    }
+    if (list.pieces.size() > list.first.back()) list.first.push_back(list.pieces.size());
+  }
+  void end_family() const { list.families.push_back(list.size()); }
+};
+
 void add_grid_springs(const Grid& g, SheetTopology& t) {
-  const auto add = [&](Index a, Index b, Real rest, SpringKind kind) {
-    t.springs.pieces.push_back(make_spring(a, b, rest, kind));
+  const auto lines = [&](SpringKind kind, int di, int dj) { return SpringLines{g, t.spring_threads, kind, di, dj}; };
+  const auto straight = [&](SpringKind kind, int step) {
+    const SpringLines weft = lines(kind, step, 0), warp = lines(kind, 0, step);
+    const Index starts = static_cast<Index>(step);
+    for (Index j = 0; j < g.rows; ++j)
+      for (Index i = 0; i < starts; ++i) weft.line(i, j);
+    weft.end_family();
+    for (Index i = 0; i < g.columns; ++i)
+      for (Index j = 0; j < starts; ++j) warp.line(i, j);
+    warp.end_family();
   };
-  for (Index j = 0; j < g.rows; ++j) {
-    for (Index i = 0; i + 1 < g.columns; ++i) add(g.at(i, j), g.at(i + 1, j), g.du, SpringKind::structural);
+  straight(SpringKind::flexion, 2);
+  for (const int di : {1, -1}) {
+    const SpringLines diagonal = lines(SpringKind::shear, di, 1);
+    const Index side = di > 0 ? 0 : g.columns - 1;
+    for (Index i = 0; i < g.columns; ++i) diagonal.line(i, 0);
+    for (Index j = 1; j < g.rows; ++j) diagonal.line(side, j);
+    diagonal.end_family();
   }
-  for (Index i = 0; i < g.columns; ++i) {
-    for (Index j = 0; j + 1 < g.rows; ++j) add(g.at(i, j), g.at(i, j + 1), g.dv, SpringKind::structural);
-  }
-  const Real diagonal = portable::hypot(g.du, g.dv);
-  for (Index j = 0; j + 1 < g.rows; ++j) {
-    for (Index i = 0; i + 1 < g.columns; ++i) add(g.at(i, j), g.at(i + 1, j + 1), diagonal, SpringKind::shear);
-    for (Index i = 0; i + 1 < g.columns; ++i) add(g.at(i + 1, j), g.at(i, j + 1), diagonal, SpringKind::shear);
-  }
-  for (Index j = 0; j < g.rows; ++j) {
-    for (Index i = 0; i + 2 < g.columns; ++i) add(g.at(i, j), g.at(i + 2, j), 2 * g.du, SpringKind::flexion);
-  }
-  for (Index i = 0; i < g.columns; ++i) {
-    for (Index j = 0; j + 2 < g.rows; ++j) add(g.at(i, j), g.at(i, j + 2), 2 * g.dv, SpringKind::flexion);
-  }
+  straight(SpringKind::structural, 1);
 }
 
 // --- meshes ---------------------------------------------------------------------------------------------------------

@@ -61,18 +61,26 @@ struct SpringPiece {
 };
 SpringPiece make_spring(Index a, Index b, Real rest, SpringKind kind);
 
+// What a piece counts in averages over the cloth; springs of one sheet count alike.
+inline Real area_of(const SpringPiece&) { return 1; }
+template <std::size_t N>
+Real area_of(const StretchPiece<N>& piece) {
+  return piece.area;
+}
+
 template <class Piece>
 struct PieceList {
   std::vector<Piece> pieces;
   Colours colours{0};
 };
 
-// Pieces along the threads of a grid, weft threads first; those of a thread one after the other.
+// Pieces along lines of nodes of a grid, those of a line one after the other. Lines of one family share no node: weft threads,
+// then warp threads; of springs flexion, shear and structural ones in this order (the stiffest last), each along both ways.
 template <class Piece>
 struct ThreadList {
   std::vector<Piece> pieces;
-  std::vector<std::size_t> first{0};  // piece of each thread, and the end
-  std::size_t weft_threads = 0;
+  std::vector<std::size_t> first{0};     // piece of each thread, and the end
+  std::vector<std::size_t> families{0};  // thread of each family, and the end
   std::size_t size() const { return first.size() - 1; }
 };
 
@@ -84,7 +92,8 @@ struct SheetTopology {
   PieceList<ShearPiece<3>> triangle_shear;      // meshes
   PieceList<BendPiece<4>> cell_bend;            // grids: twist
   PieceList<BendPiece<ring_nodes>> ring_bend;   // meshes
-  PieceList<SpringPiece> springs;               // of either kind of sheet
+  ThreadList<SpringPiece> spring_threads;       // grids
+  PieceList<SpringPiece> springs;               // meshes
   Real shortest_edge = 0;                       // m, in the material
 };
 
