@@ -27,10 +27,16 @@ std::vector<ShapeCase> all_shapes() {
     return z >= 0 && z <= 1 && r <= radius_at(z);
   };
   const Vec3 tilt = normalized(Vec3{0.2, -0.3, 1});
+  const Vec3 u = normalized(Vec3{2, 1, -0.5}), v = normalized(cross(tilt, u)), n = cross(u, v);
   return {
       {"plane", Plane{{0, 0, 0.2}, tilt}, [=](const Vec3& p) { return dot(p - Vec3{0, 0, 0.2}, tilt) <= 0; }},
       {"box", Box{{0.1, 0, 0}, {1, 0.6, 1.4}},
        [](const Vec3& p) { return std::abs(p.x - 0.1) <= 0.5 && std::abs(p.y) <= 0.3 && std::abs(p.z) <= 0.7; }},
+      {"turned_box", Box{{0.1, 0, 0}, {1, 0.6, 1.4}, {u, v, n}},
+       [=](const Vec3& p) {
+         const Vec3 from = p - Vec3{0.1, 0, 0};
+         return std::abs(dot(from, u)) <= 0.5 && std::abs(dot(from, v)) <= 0.3 && std::abs(dot(from, n)) <= 0.7;
+       }},
       {"sphere", Sphere{{0, 0.1, 0}, 0.8}, [](const Vec3& p) { return norm(p - Vec3{0, 0.1, 0}) <= 0.8; }},
       {"cylinder", Cylinder{{}, axis, 0.5, 1}, [=](const Vec3& p) { return in_round(p, [](Real) { return 0.5; }); }},
       {"cone", Cone{{}, axis, 0.7, 1}, [=](const Vec3& p) { return in_round(p, [](Real z) { return 0.7 * (1 - z); }); }},

@@ -87,6 +87,22 @@ TEST(Boundary, the_gradient_is_the_finite_difference_of_lambda) {
   }
 }
 
+TEST(Boundary, a_turned_box_and_a_turned_sheet_are_the_straight_ones_turned) {
+  const Vec3 u = normalized(Vec3{2, 1, -1}), v = normalized(cross(Vec3{0.3, 0, 1}, u)), n = cross(u, v);
+  const auto turned = [&](const Vec3& p) { return p.x * u + p.y * v + p.z * n; };
+  const Vec3 places[] = {{9.3e-3, 2e-3, 0.9e-3}, {1e-3, 0, -0.8e-3}, {10.4e-3, 10.2e-3, 0.7e-3}};
+  for (const bool two_sided : {false, true})
+    for (const Vec3& p : places) {
+      const Shape straight = Box{{0, 0, 0}, {20e-3, 20e-3, 1e-3}};
+      const Shape box = Box{{0, 0, 0}, {20e-3, 20e-3, 1e-3}, {u, v, n}};
+      const Wall before{&straight, {}, {}, two_sided}, after{&box, {}, {}, two_sided};
+      const Float4 a = sampled({p}, {&before, 1}).wall[0], b = sampled({turned(p)}, {&after, 1}).wall[0];
+      EXPECT_GT(a.w, 0);
+      EXPECT_NEAR(b.w, a.w, 1e-5 * a.w);  // single precision of positions of 10 mm in distances of 1 mm
+      EXPECT_NEAR(norm(Vec3{b.x, b.y, b.z} - turned({a.x, a.y, a.z})), 0, 1e-4 * norm(Vec3{a.x, a.y, a.z}));
+    }
+}
+
 TEST(Boundary, several_walls_combine_and_their_gradients_add_up) {
   const Shape floor = Plane{}, side = Plane{{0, 0, 0}, {1, 0, 0}};
   const Wall walls[] = {{&floor, {}, {}, false}, {&side, {}, {}, false}};

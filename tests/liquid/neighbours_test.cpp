@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
 #include "imbibe/core/random.h"
 #include "imbibe/liquid/particles.h"
@@ -132,6 +134,18 @@ TEST(Neighbours, memory_follows_occupied_cells_however_large_the_domain) {
   add_particle(liquid, {1e5, -1e5, 1e5}, {});
   const Searched s = searched(liquid);
   EXPECT_LT(s.n.cells.size(), 40u);
+}
+
+TEST(Neighbours, liquid_that_blew_up_is_reported_and_not_sorted) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Vec3& lost : {Vec3{1e25, 0, 0}, Vec3{0, -1e18, 0}, Vec3{0, 0, static_cast<Real>(nan)}}) {
+    Liquid liquid = random_cloud(10, {1, 1, 1}, 3);
+    add_particle(liquid, lost, {});
+    EXPECT_THROW(searched(std::move(liquid)), NumericalError);
+  }
+  Liquid spread = random_cloud(10, {1, 1, 1}, 3);  // each place has a number, the box around them has none
+  add_particle(spread, {1e8, 1e8, 1e8}, {});
+  EXPECT_THROW(searched(std::move(spread)), NumericalError);
 }
 
 TEST(Neighbours, lists_have_the_same_bits_for_any_number_of_threads) {

@@ -137,11 +137,6 @@ TEST(BadScene, DirectionsThatAreNotSquareAreRefused) {
              "not square");
 }
 
-TEST(BadScene, ASkewedSheetIsRefused) {
-  expect_one(problems_of(with_line(16, "    warp_direction: [0, 1, 1]")), 16, 21, "textiles[0].warp_direction",
-             "one component, two zeros");
-}
-
 TEST(BadScene, AnIncompleteSolidNamesWhatIsMissing) {
   const auto problems = problems_of(std::string(small_scene) + "solids:\n  - {shape: {kind: sphere, radius: 3 mm}}\n");
   ASSERT_EQ(problems.size(), 1u);

@@ -5,11 +5,7 @@
 namespace imbibe {
 
 Shape sheet_shape(const YarnNetwork& network, const Placement& placement) {
-  const auto along = [](const Vec3& a, Real length) {
-    return Vec3{std::abs(a.x) * length, std::abs(a.y) * length, std::abs(a.z) * length};
-  };
-  return Box{placement.origin, along(placement.u, network.size_x) + along(placement.v, network.size_y) +
-                                   along(placement.n, network.thickness)};
+  return Box{placement.origin, {network.size_x, network.size_y, network.thickness}, {placement.u, placement.v, placement.n}};
 }
 
 std::function<WallAngles(const Vec3&)> wet_angles(const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,

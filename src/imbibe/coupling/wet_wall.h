@@ -29,7 +29,7 @@ constexpr Real cos_wet_face(Real cos_theta, Real saturation) {
   return cos_theta + s * (filled - cos_theta);
 }
 
-// The slab of the sheet in the world. Its directions lie along x, y and z in any order; the scene reader refuses others.
+// The slab of the sheet in the world, at any orientation.
 Shape sheet_shape(const YarnNetwork& network, const Placement& placement);
 
 // The angles of a cloth's faces by place in the world, for one step; everything must outlive it.

@@ -25,16 +25,16 @@ SurfaceSample nearest_on(const Sphere& sphere, const Vec3& p) {
 }
 
 SurfaceSample nearest_on(const Box& box, const Vec3& p) {
-  const Vec3 d = p - box.centre;
+  const Vec3 d = box.from_centre(p);
   const Vec3 side{std::copysign(1.0, d.x), std::copysign(1.0, d.y), std::copysign(1.0, d.z)};
   const Vec3 over{std::abs(d.x) - 0.5 * box.size.x, std::abs(d.y) - 0.5 * box.size.y,
                   std::abs(d.z) - 0.5 * box.size.z};
   const Vec3 out{std::max(over.x, 0.0), std::max(over.y, 0.0), std::max(over.z, 0.0)};
   const Real distance = norm(out);
-  if (distance > 0) return {distance, Vec3{side.x * out.x, side.y * out.y, side.z * out.z} / distance};
-  if (over.x >= over.y && over.x >= over.z) return {over.x, {side.x, 0, 0}};
-  if (over.y >= over.z) return {over.y, {0, side.y, 0}};
-  return {over.z, {0, 0, side.z}};
+  if (distance > 0) return {distance, box.to_world({side.x * out.x, side.y * out.y, side.z * out.z}) / distance};
+  if (over.x >= over.y && over.x >= over.z) return {over.x, side.x * box.axes[0]};
+  if (over.y >= over.z) return {over.y, side.y * box.axes[1]};
+  return {over.z, side.z * box.axes[2]};
 }
 
 // A point or direction in the half-plane of a solid of revolution: across = distance from the axis, along = height.
@@ -102,7 +102,15 @@ Bounds bounds_on(const Plane&) {
   return all;
 }
 
-Bounds bounds_on(const Box& box) { return {box.centre - 0.5 * box.size, box.centre + 0.5 * box.size}; }
+Bounds bounds_on(const Box& box) {
+  const auto reach = [&](auto component) {
+    return 0.5 * (std::abs(component(box.axes[0])) * box.size.x + std::abs(component(box.axes[1])) * box.size.y +
+                  std::abs(component(box.axes[2])) * box.size.z);
+  };
+  const Vec3 half{reach([](const Vec3& a) { return a.x; }), reach([](const Vec3& a) { return a.y; }),
+                  reach([](const Vec3& a) { return a.z; })};
+  return {box.centre - half, box.centre + half};
+}
 
 Bounds bounds_on(const Sphere& s) {
   const Vec3 r{s.radius, s.radius, s.radius};

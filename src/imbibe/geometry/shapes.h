@@ -1,6 +1,7 @@
 // Fixed solids as signed-distance shapes: plane, box, sphere, cylinder, cone, closed mesh.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <variant>
 
@@ -15,7 +16,12 @@ struct SurfaceSample {
 };
 
 struct Plane { Vec3 point{}; Vec3 normal{0, 0, 1}; };                   // solid below, normal points to the liquid
-struct Box { Vec3 centre{}; Vec3 size{1, 1, 1}; };                      // axis-aligned
+struct Box {
+  Vec3 centre{}, size{1, 1, 1};
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  // unit, square to each other; size along each
+  Vec3 from_centre(const Vec3& p) const { return {dot(p - centre, axes[0]), dot(p - centre, axes[1]), dot(p - centre, axes[2])}; }
+  Vec3 to_world(const Vec3& direction) const { return direction.x * axes[0] + direction.y * axes[1] + direction.z * axes[2]; }
+};
 struct Sphere { Vec3 centre{}; Real radius = 1; };
 struct Cylinder { Vec3 base{}; Vec3 axis{0, 0, 1}; Real radius = 1; Real height = 1; };  // axis: unit
 struct Cone { Vec3 base{}; Vec3 axis{0, 0, 1}; Real radius = 1; Real height = 1; };      // apex at base + height*axis

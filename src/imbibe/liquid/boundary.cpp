@@ -47,11 +47,11 @@ SolidSum solid_sum(const Plane& s, const Vec3& p, Real h) {
 }
 
 SolidSum solid_sum(const Box& s, const Vec3& p, Real h) {
-  const Vec3 from = p - s.centre;
+  const Vec3 from = s.from_centre(p);
   SlabProduct product;
-  product.add(half_space_integral(std::abs(from.x) - 0.5 * s.size.x, h), {sign(from.x), 0, 0});
-  product.add(half_space_integral(std::abs(from.y) - 0.5 * s.size.y, h), {0, sign(from.y), 0});
-  product.add(half_space_integral(std::abs(from.z) - 0.5 * s.size.z, h), {0, 0, sign(from.z)});
+  product.add(half_space_integral(std::abs(from.x) - 0.5 * s.size.x, h), sign(from.x) * s.axes[0]);
+  product.add(half_space_integral(std::abs(from.y) - 0.5 * s.size.y, h), sign(from.y) * s.axes[1]);
+  product.add(half_space_integral(std::abs(from.z) - 0.5 * s.size.z, h), sign(from.z) * s.axes[2]);
   return product.sum();
 }
 
@@ -112,21 +112,21 @@ SolidSum sum_of(const Shape& shape, const Vec3& p, Real h) {
   }, shape);
 }
 
-// A thin box as a sheet: its thin axis, and half the thickness.
+// A thin box as a sheet: its thin axis, and half its lengths.
 struct Sheet {
+  Box box;
+  Real half[3];
   int axis = 2;
-  Real centre[3], half[3];
+  Vec3 normal(Real side) const { return side * box.axes[static_cast<std::size_t>(axis)]; }
 };
 
 Sheet sheet_of(const Box& b) {
-  Sheet s{2, {b.centre.x, b.centre.y, b.centre.z}, {0.5 * b.size.x, 0.5 * b.size.y, 0.5 * b.size.z}};
+  Sheet s{b, {0.5 * b.size.x, 0.5 * b.size.y, 0.5 * b.size.z}, 2};
   for (int a = 0; a < 2; ++a) {
     if (s.half[a] < s.half[s.axis]) s.axis = a;
   }
   return s;
 }
-
-Vec3 unit(int axis, Real length) { return {axis == 0 ? length : 0, axis == 1 ? length : 0, axis == 2 ? length : 0}; }
 
 // Where a point lies relative to a sheet: how far over the face of its side, and whether over or under the sheet rather
 // than beside it.
@@ -137,16 +137,16 @@ struct SheetPlace {
 };
 
 SheetPlace place_at(const Sheet& s, const Vec3& p) {
-  const Real x[3] = {p.x, p.y, p.z};
+  const Vec3 d = s.box.from_centre(p);
+  const Real from[3] = {d.x, d.y, d.z};
   SheetPlace r;
   r.facing = true;
   for (int a = 0; a < 3; ++a) {
-    const Real from = x[a] - s.centre[a];
     if (a == s.axis) {
-      r.side = sign(from);
-      r.distance = std::abs(from) - s.half[a];
+      r.side = sign(from[a]);
+      r.distance = std::abs(from[a]) - s.half[a];
     } else {
-      r.facing = r.facing && std::abs(from) <= s.half[a];
+      r.facing = r.facing && std::abs(from[a]) <= s.half[a];
     }
   }
   return r;
@@ -192,12 +192,13 @@ std::vector<PreparedWall> prepared(std::span<const Wall> walls, Real support) {
 
 // A sheet seen by a particle: all the solid behind the face on the particle's side, ending at the sheet's edges.
 SolidSum sheet_sum(const Sheet& s, const SheetPlace& at, const Vec3& p, Real h) {
-  const Real x[3] = {p.x, p.y, p.z};
+  const Vec3 d = s.box.from_centre(p);
+  const Real from[3] = {d.x, d.y, d.z};
   SlabProduct product;
   for (int a = 0; a < 3; ++a) {
-    const Real from = x[a] - s.centre[a];
-    const Real distance = a == s.axis ? at.distance : std::abs(from) - s.half[a];
-    product.add(half_space_integral(distance, h), unit(a, a == s.axis ? at.side : sign(from)));
+    const Real distance = a == s.axis ? at.distance : std::abs(from[a]) - s.half[a];
+    product.add(half_space_integral(distance, h),
+                (a == s.axis ? at.side : sign(from[a])) * s.box.axes[static_cast<std::size_t>(a)]);
   }
   return product.sum();
 }
@@ -254,7 +255,7 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, Boundary::M
     const SheetPlace at = place_at(*w.sheet, p);
     if (at.facing && at.distance < support) side |= (at.side > 0 ? 1u : 1u << 16) << w.sheet_bit;
     if (at.facing) {
-      nearest = {at.distance, unit(w.sheet->axis, at.side)};
+      nearest = {at.distance, w.sheet->normal(at.side)};
     } else {
       nearest = nearest_surface(*w.wall->shape, p);
     }
@@ -416,8 +417,8 @@ SurfaceSample place_after(const Wall& wall, const Vec3& before, const Vec3& now)
   const Sheet sheet = sheet_of(*box);
   const SheetPlace was = place_at(sheet, before), is = place_at(sheet, now);
   if (!is.facing) return {std::numeric_limits<Real>::infinity(), {}};
-  if (!was.facing || was.side == is.side) return {is.distance, unit(sheet.axis, is.side)};
-  return {-is.distance - 2 * sheet.half[sheet.axis], unit(sheet.axis, was.side)};  // through the sheet
+  if (!was.facing || was.side == is.side) return {is.distance, sheet.normal(is.side)};
+  return {-is.distance - 2 * sheet.half[sheet.axis], sheet.normal(was.side)};  // through the sheet
 }
 
 Float4 record(const Vec3& v, float w) {

@@ -24,13 +24,17 @@ struct CellRange {
 
 std::int64_t cell_of(float x, float inverse) { return static_cast<std::int64_t>(std::floor(x * inverse)); }
 
+// Only liquid that blew up lies where cells have no number: beyond 2^50 of them from the origin, or nowhere (NaN).
 CellRange cell_range(std::span<const Float4> position, float inverse) {
   const float inf = std::numeric_limits<float>::infinity();
   Float4 low{inf, inf, inf, 0}, high{-inf, -inf, -inf, 0};
+  bool numbered = true;
   for (const Float4& p : position) {
     low.x = std::min(low.x, p.x), low.y = std::min(low.y, p.y), low.z = std::min(low.z, p.z);
     high.x = std::max(high.x, p.x), high.y = std::max(high.y, p.y), high.z = std::max(high.z, p.z);
+    numbered &= (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)) * inverse < 0x1p50f;
   }
+  if (!numbered) throw NumericalError(0, 0, "liquid", "a particle has no place or lies out of reach");
   return {{cell_of(low.x, inverse), cell_of(low.y, inverse), cell_of(low.z, inverse)},
           {cell_of(high.x, inverse), cell_of(high.y, inverse), cell_of(high.z, inverse)}};
 }
@@ -86,7 +90,8 @@ void find_keys(Neighbours& n, std::span<const Float4> position) {
     size[a] = static_cast<std::uint64_t>(range.high[a] - range.low[a] + 3);  // one empty cell at either end
     cells *= static_cast<Real>(size[a]);
   }
-  IMBIBE_ASSERT(cells < 0x1p62);
+  if (!(cells < 0x1p62))
+    throw NumericalError(0, 0, "liquid", "particles lie too far apart to be sorted: give the scene a domain that they leave");
   n.row = size[0];
   n.layer = size[0] * size[1];
   parallel_for(n.count, [&](std::size_t i) {

@@ -73,10 +73,6 @@ void check_textile(const Scene& scene, std::size_t i, std::vector<Problem>& prob
   if (u > 0 && v > 0 && std::abs(dot(t.weft_direction, t.warp_direction)) > 1e-6 * u * v)
     problems.push_back(scene_problem(scene, key + ".warp_direction", "is not square to weft_direction"));
   check_cloth_keys(scene, i, problems);
-  if (!t.wetting.is_cells() && !t.sheet.is_soft())
-  for (const auto& [name, direction] : {std::pair{".weft_direction", t.weft_direction}, {".warp_direction", t.warp_direction}})
-    if (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z) > (1 + 1e-9) * norm(direction))
-      problems.push_back(scene_problem(scene, key + name, "in this version a sheet lies along x, y and z: one component, two zeros"));
   if (t.contact_angle && t.receding_angle && *t.receding_angle > *t.contact_angle)
     problems.push_back(scene_problem(scene, key + ".receding_angle", "is above contact_angle (the advancing angle)"));
 }

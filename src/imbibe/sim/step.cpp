@@ -130,7 +130,8 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   try {
     liquid = step_liquid(world.liquid, world.liquid_params, scratch.walls, world.gravity, max_step, scratch.liquid);
   } catch (const NumericalError& error) {  // the liquid knows neither the world's time nor its step
-    throw NumericalError(world.time, world.step, error.stage, error.where + ": " + lost_particle(world.liquid.particles));
+    const std::string lost = lost_particle(world.liquid.particles);
+    throw NumericalError(world.time, world.step, error.stage, error.where + (lost.empty() ? "" : ": " + lost));
   }
   book_impulses(world, liquid, scratch);
   report.liquid_moved = true;

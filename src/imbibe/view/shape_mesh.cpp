@@ -50,13 +50,12 @@ DrawnMesh mesh_of_one(const Plane&) { return {}; }
 
 DrawnMesh mesh_of_one(const Box& box) {
   DrawnMesh mesh;
-  const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const Real half[3] = {box.size.x / 2, box.size.y / 2, box.size.z / 2};
-  for (int axis = 0; axis < 3; ++axis)
+  for (std::size_t axis = 0; axis < 3; ++axis)
     for (const Real sign : {-1.0, 1.0}) {
-      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      const Vec3 n = sign * axes[axis], middle = box.centre + half[axis] * n;
-      const Vec3 du = half[u] * axes[u], dv = sign * half[v] * axes[v];
+      const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const Vec3 n = sign * box.axes[axis], middle = box.centre + half[axis] * n;
+      const Vec3 du = half[u] * box.axes[u], dv = sign * half[v] * box.axes[v];
       const Index a = add_vertex(mesh, middle - du - dv, n), b = add_vertex(mesh, middle + du - dv, n);
       const Index c = add_vertex(mesh, middle + du + dv, n), d = add_vertex(mesh, middle - du + dv, n);
       mesh.triangles.push_back({a, b, c});
