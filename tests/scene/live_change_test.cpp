@@ -151,6 +151,19 @@ TEST(LiveChange, AddedDropFalls) {
   EXPECT_LT(mass_balance(with.world).error(), 1e-10);
 }
 
+TEST(LiveChange, DropMayFallWhereABentClothNoLongerIs) {
+  Running r{read_scene_text(soft_scene(false), "soft"), {}};
+  r.world = build_world(r.scene, library());
+  Sheet& sheet = r.world.textiles[0].cloth->soft.sheet;
+  for (Vec3& x : sheet.position) x.z -= 5e-3;
+  const auto drop = [&](const char* z) {
+    return fmt::format("liquid.drops[1]={{centre: [5 mm, 5 mm, {}], volume: 1 uL, start: 1 ms}}", z);
+  };
+  EXPECT_THROW(apply_change(r.scene, r.world, library(), {drop("-5 mm")}), InputError) << "the cloth is there now";
+  apply_change(r.scene, r.world, library(), {drop("0 mm")});
+  EXPECT_EQ(r.scene.liquid.drops.size(), 2u);
+}
+
 TEST(LiveChange, YarnsThatNoLongerWetExpelWhatTheyHeld) {
   Running r = run_with({}, 30e-3);
   const MassBalance before = mass_balance(r.world);

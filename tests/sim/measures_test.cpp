@@ -70,6 +70,17 @@ TEST(Measures, of_a_stain_are_its_extents_in_pitches_and_its_share_of_the_sheet)
   EXPECT_NEAR(measure(textile, air, {.wet_saturation = 0.01}).extent_warp, 2 * pitch, 1e-12);
 }
 
+TEST(Measures, of_height_are_those_of_the_cloth_as_it_hangs) {
+  const Air air;
+  Textile textile = testing::small_textile("t", testing::small_fabric(), air);
+  const YarnNetwork& network = textile.fabric->network;
+  fill(textile, segment_at(network, Family::weft, 0.5 * pitch, 0.5 * pitch), 0.5);
+  fill(textile, segment_at(network, Family::weft, 3.5 * pitch, -1.5 * pitch), 0.5);
+  EXPECT_LT(measure(textile, air).wet_height, network.thickness);
+  textile.placement.v = {0, 0, 1}, textile.placement.n = {0, -1, 0};  // upright
+  EXPECT_NEAR(measure(textile, air).wet_height, 2 * pitch, 1e-12);
+}
+
 TEST(Measures, count_wet_pores_by_their_cells) {
   const Air air;
   Textile textile = testing::small_textile("t", testing::small_fabric(), air);

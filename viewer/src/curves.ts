@@ -94,8 +94,21 @@ export class Curves {
       legend: { show: false }, cursor: { drag: { x: false, y: false }, points: { size: 5 } },
       scales: { x: { time: false } },
       axes: [{ ...axis, size: 26, label: chart.x === 'root' ? '√t (√s)' : 't (s)', labelSize: 14, labelFont: '11px system-ui, sans-serif' }, { ...axis, size: 44 }],
-      hooks: { ready: [(plot) => this.key(chart, plot)] },
+      hooks: { ready: [(plot) => this.key(chart, plot)], draw: [(plot) => this.now(chart, plot, ink)] },
     };
+  }
+
+  // Where a replay is on its curves, which are those of the whole run.
+  private now(chart: Chart, plot: uPlot, ink: string): void {
+    const swatch = this.swatches()[0];
+    if (!swatch?.series.whole) return;
+    const t = Math.max(0, swatch.value('time_s')), x = Math.round(plot.valToPos(chart.x === 'root' ? Math.sqrt(t) : t, 'x', true));
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.globalAlpha = 0.45;
+    ctx.fillStyle = ink;
+    ctx.fillRect(x, bbox.top, Math.max(1, Math.round(devicePixelRatio)), bbox.height);
+    ctx.restore();
   }
 
   // The names of the curves beside the title, where they take no room from the curves.

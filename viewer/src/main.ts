@@ -156,6 +156,13 @@ function setSwatches(count: number): void {
   view.fit('keep');
 }
 
+// Two views leave the colour bar its own room, and their labels keep to them.
+function layOut(): void {
+  view.margin = byId('legend').hidden ? 0 : byId('legend').offsetWidth + 20;
+  byId('labels').style.right = `${swatches.length > 1 ? view.margin : 0}px`;
+  view.touch();
+}
+
 function onFrame(frame: Frame): void {
   const swatch = swatchAt(frame.swatch);
   swatch.take(frame, sides());
@@ -183,6 +190,7 @@ function showTitle(): void {
   byId('title').textContent = titles[0] || 'Imbibe';
   document.title = `${titles[0] || 'Imbibe'} · Imbibe live`;
   byId('labels').innerHTML = '';
+  layOut();
   if (swatches.length > 1)
     swatches.forEach((s, i) => {
       const t = s.textiles[0], label = document.createElement('div');
@@ -338,6 +346,7 @@ const keys: Record<string, string> = { ' ': 'run', '.': 'step', r: 'reset', p: '
   i: 'mode-look', d: 'mode-drop', f: 'fit', t: 'top', s: 'side', x: 'section' };
 document.addEventListener('keydown', (e) => {
   const at = e.target as HTMLElement;
+  if (e.key === 'Escape' && at.tagName === 'INPUT' && !at.closest('dialog')) return at.blur();  // back to the keys of the view
   if (e.ctrlKey || e.metaKey || e.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(at.tagName) || at.closest('dialog')) return;
   if (at.tagName === 'BUTTON' && (e.key === ' ' || e.key === 'Enter')) return;
   const turns: Record<string, () => void> = { ArrowLeft: () => view.turn(-0.12, 0), ArrowRight: () => view.turn(0.12, 0),
@@ -353,7 +362,7 @@ byId<HTMLSelectElement>('speed').onchange = (e) => connection.send({ type: 'spee
 byId<HTMLSelectElement>('look').onchange = (e) => {
   look.natural.value = (e.target as HTMLSelectElement).value === 'natural' ? 1 : 0;
   byId('legend').hidden = look.natural.value === 1;
-  view.touch();
+  layOut();
 };
 byId<HTMLSelectElement>('quality').onchange = (e) => view.setQuality((e.target as HTMLSelectElement).value as Quality);
 byId<HTMLInputElement>('section-place').oninput = (e) => view.setSection(Number((e.target as HTMLInputElement).value));

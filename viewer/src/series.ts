@@ -5,14 +5,18 @@ export class Series {
   private stride = 1;
   private skipped = 0;
 
+  // `whole`: of a finished run, which is all there; frames add nothing.
   constructor(readonly columns: string[], private readonly most = 4000) {}
+  whole = false;
 
-  load(history: (number | null)[][]): void {
+  load(history: (number | null)[][], whole = false): void {
     this.rows = history.map((row) => Float64Array.from(row, (x) => x ?? Number.NaN));
+    this.whole = whole && history.length > 0;
     this.stride = 1;
   }
 
   add(values: Float64Array): void {
+    if (this.whole) return;
     const last = this.rows[this.rows.length - 1];
     if (last && values[0]! < last[0]!) this.rows = this.rows.filter((row) => row[0]! <= values[0]!);  // a replay went back
     if (last && values[0]! === last[0]!) { this.rows[this.rows.length - 1] = values; return; }

@@ -5,6 +5,7 @@ import { Cloth } from './cloth';
 import { Liquid } from './liquid';
 import { Series } from './series';
 import { solidMesh } from './solids';
+import { Pores } from './pores';
 import { MM, Yarns, type YarnLook } from './yarns';
 
 function boxOf({ origin, step, xyz }: Points): THREE.Box3 {
@@ -18,7 +19,7 @@ export class Swatch {
   yarns: Yarns[] = [];
   cloths: Cloth[] = [];                // owners after the textiles
   liquid: Liquid | null = null;
-  pores: Float32Array[] = [];          // mm, three per pore
+  pores: Pores[] = [];                 // per textile
   readonly series: Series;
   message: SceneMessage | null = null;
   generation = 0;
@@ -26,7 +27,7 @@ export class Swatch {
   values: Float64Array = new Float64Array();
   frames = 0;
   frameBytes = 0;
-  readonly bounds = new THREE.Box3();
+  private readonly solidBounds = new THREE.Box3();
   readonly startingLiquid = new THREE.Box3();
   shadowsStale = true;
   private readonly things = new THREE.Group();
@@ -45,11 +46,25 @@ export class Swatch {
 
   get textiles() { return this.message?.textiles ?? []; }
 
+  // Where the cloths are now; empty when there are none.
+  get clothBounds(): THREE.Box3 {
+    const box = new THREE.Box3();
+    for (const yarns of this.yarns) box.union(yarns.box);
+    for (const cloth of this.cloths) box.union(cloth.mesh.geometry.boundingBox!);
+    return box;
+  }
+
+  // Cloths and solids.
+  get bounds(): THREE.Box3 {
+    const box = this.clothBounds.union(this.solidBounds);
+    return box.isEmpty() ? box.set(new THREE.Vector3(-10, -10, 0), new THREE.Vector3(10, 10, 10)) : box;
+  }
+
   begin(message: SceneMessage): void {
     this.message = message;
     this.generation = message.generation;
     this.frames = 0;
-    this.series.load(message.history);
+    this.series.load(message.history, message.replay);
     this.values = new Float64Array(this.series.columns.length);
   }
 
@@ -96,8 +111,7 @@ export class Swatch {
         this.yarns[section.owner] = yarns;
         this.things.add(yarns.group);
       } else if (section.kind === 'pores') {
-        const { origin, step, xyz } = section.points;
-        this.pores[section.owner] = Float32Array.from(xyz, (x, i) => MM * (origin[i % 3]! + step[i % 3]! * x));
+        this.pores[section.owner] = new Pores(section.points, this.yarns[section.owner]!);
       } else if (section.kind === 'vertices') {
         meshes.set(section.owner, { vertices: section.values, triangles: new Uint32Array() });
       } else if (section.kind === 'triangles') {
@@ -105,27 +119,22 @@ export class Swatch {
         if (mesh) mesh.triangles = section.values;
       }
     }
-    this.bounds.makeEmpty();
+    this.solidBounds.makeEmpty();
     this.startingLiquid.makeEmpty();
     this.shadowsStale = true;
-    for (const yarns of this.yarns)
-      for (let i = 0; i < yarns.firstPoint[yarns.firstPoint.length - 1]!; ++i)
-        this.bounds.expandByPoint(new THREE.Vector3(yarns.points[4 * i]!, yarns.points[4 * i + 1]!, yarns.points[4 * i + 2]!));
-    for (const cloth of this.cloths) this.bounds.union(cloth.mesh.geometry.boundingBox!);
-    const extent = this.bounds.isEmpty() ? 20 : this.bounds.getSize(new THREE.Vector3()).length();
+    const extent = this.bounds.getSize(new THREE.Vector3()).length();
     message.solids.forEach((solid, i) => {
       const mesh = solidMesh(solid, extent, meshes.get(i));
       this.things.add(mesh);
-      if (solid.form !== 'plane') this.bounds.expandByObject(mesh);
+      if (solid.form !== 'plane') this.solidBounds.expandByObject(mesh);
     });
-    if (this.bounds.isEmpty()) this.bounds.set(new THREE.Vector3(-10, -10, 0), new THREE.Vector3(10, 10, 10));
     this.liquid = new Liquid(message.liquid.spacing || 1e-4);
     this.things.add(this.liquid.balls);
-    this.light();
   }
 
-  private light(): void {
-    const centre = this.bounds.getCenter(new THREE.Vector3()), size = this.bounds.getSize(new THREE.Vector3()).length();
+  // The sun over what is there now.
+  light(): void {
+    const bounds = this.bounds, centre = bounds.getCenter(new THREE.Vector3()), size = bounds.getSize(new THREE.Vector3()).length();
     this.sun.position.copy(centre).add(new THREE.Vector3(0.55, -0.65, 1.1).multiplyScalar(size));
     this.sun.target.position.copy(centre);
     const camera = this.sun.shadow.camera, half = 0.62 * size;

@@ -68,7 +68,6 @@ export class View {
     const boxes: THREE.Box3[] = [];
     for (const swatch of this.swatches()) {
       boxes.push(swatch.bounds, swatch.startingLiquid);
-      for (const cloth of swatch.cloths) boxes.push(cloth.mesh.geometry.boundingBox!);
     }
     const some = boxes.filter((box) => !box.isEmpty());
     return some.length > 0 ? some : [new THREE.Box3(new THREE.Vector3(-10, -10, -1), new THREE.Vector3(10, 10, 1))];
@@ -132,9 +131,12 @@ export class View {
     this.touch();
   }
 
+  // CSS pixels at the right that two views leave to the colour bar; over one view's corner it lies.
+  margin = 0;
+
   // The part of the canvas of a swatch: x, y from below, width, height in CSS pixels.
   area(index: number): THREE.Vector4 {
-    const n = Math.max(1, this.swatches().length), width = this.canvas.clientWidth / n;
+    const n = Math.max(1, this.swatches().length), width = (this.canvas.clientWidth - (n > 1 ? this.margin : 0)) / n;
     return new THREE.Vector4(Math.round(index * width), 0, Math.round(width), this.canvas.clientHeight);
   }
 
@@ -173,7 +175,7 @@ export class View {
       if (this.cut === null) liquid.uniforms.uCut.value.set(0, 0, 0, 1);
       else liquid.uniforms.uCut.value.set(cut.normal.x, cut.normal.y, cut.normal.z, cut.constant);
     }
-    if (swatch.shadowsStale) this.renderer.shadowMap.needsUpdate = true, swatch.shadowsStale = false;
+    if (swatch.shadowsStale) swatch.light(), this.renderer.shadowMap.needsUpdate = true, swatch.shadowsStale = false;
     const smooth = this.surface !== null && liquid !== null && liquid.count > 0;
     swatch.showBalls(!smooth);
     if (smooth) return this.surface!.render(this.renderer, swatch.scene, this.camera, liquid, area, this.dark);
@@ -185,9 +187,13 @@ export class View {
 
   private section(): void {
     if (this.cut === null) { this.renderer.clippingPlanes = []; return; }
-    const bounds = this.bounds(), centre = bounds.getCenter(new THREE.Vector3()), size = bounds.getSize(new THREE.Vector3());
-    this.plane.normal.set(0, 1, 0);
-    this.plane.constant = -(centre.y + 0.5 * this.cut * size.y);
+    // Across the cloth: a sheet that hangs facing the front is cut from top to bottom, all others along the front.
+    const box = this.swatches().reduce((all, swatch) => all.union(swatch.clothBounds), new THREE.Box3());
+    const bounds = box.isEmpty() ? this.bounds() : box, size = bounds.getSize(new THREE.Vector3());
+    const axis = size.y < 0.3 * size.x ? 'x' : 'y';
+    this.plane.normal.set(axis === 'x' ? -1 : 0, axis === 'y' ? 1 : 0, 0);
+    const place = bounds.getCenter(new THREE.Vector3())[axis] + 0.5 * this.cut * size[axis];
+    this.plane.constant = axis === 'x' ? place : -place;
     this.renderer.clippingPlanes = [this.plane];
   }
 
@@ -212,7 +218,7 @@ export class View {
   // The swatch under a point of the page, and the ray through it.
   private ray(x: number, y: number): { index: number; ray: THREE.Ray } {
     const box = this.canvas.getBoundingClientRect(), n = Math.max(1, this.swatches().length);
-    const index = Math.min(n - 1, Math.max(0, Math.floor(((x - box.left) / box.width) * n)));
+    const index = Math.min(n - 1, Math.max(0, Math.floor((x - box.left) / this.area(0).z)));
     const area = this.area(index);
     this.camera.aspect = area.z / area.w;
     this.camera.updateProjectionMatrix();
@@ -249,9 +255,10 @@ export class View {
         }
       }
       if (best) return;
-      const pores = swatch.pores[textile], reach = 500 * Math.min(...info.pitch);
-      for (let i = 0; pores && i < pores.length / 3; ++i) {
+      const pores = swatch.pores[textile]?.places() ?? [], reach = 500 * Math.min(...info.pitch);
+      for (let i = 0; i < pores.length / 3; ++i) {
         a.fromArray(pores, 3 * i);
+        if (this.cut !== null && this.plane.distanceToPoint(a) < 0) continue;
         const d2 = ray.distanceSqToPoint(a);
         if (d2 > reach * reach || Math.sqrt(d2) >= nearest) continue;
         nearest = Math.sqrt(d2);

@@ -29,6 +29,7 @@ export interface YarnLook {
 const HEAD = `
 uniform sampler2D uPoints; uniform sampler2D uSaturation; uniform float uPixels;
 uniform vec3 uAcross0; uniform vec3 uAcross1; uniform vec3 uNormal; uniform float uMiddle; uniform float uScale;
+uniform float uMoved; uniform float uHalfLoop;
 attribute vec2 aPlace;              // ring of the piece, angle
 attribute vec4 aPiece;              // first point, first and last point of the yarn, radius
 attribute vec4 aYarn;               // colour, family
@@ -94,12 +95,18 @@ export class Yarns {
 
   setPoints(points: Points): void {
     const { origin, step, xyz } = points;
+    this.box.min.fromArray(origin).multiplyScalar(MM);
+    this.box.max.fromArray(step).multiplyScalar(65535 * MM).add(this.box.min);
     for (let i = 0; i < xyz.length / 3; ++i)
       for (let k = 0; k < 3; ++k) this.points[4 * i + k] = MM * (origin[k]! + step[k]! * xyz[3 * i + k]!);
     if (this.pointTexture) this.pointTexture.needsUpdate = true;
   }
 
-  moved = false;  // of a soft sheet: no longer where the scene message puts the cloth
+  // Of a soft sheet: no longer where the scene message puts the cloth.
+  private readonly bent = { value: 0 };
+  get moved(): boolean { return this.bent.value > 0; }
+  set moved(on: boolean) { this.bent.value = on ? 1 : 0; }
+  readonly box = new THREE.Box3();  // mm, of the points
   saturationChanged(): void { this.saturationTexture.needsUpdate = true; }
 
   private pieces(sides: number): THREE.InstancedBufferGeometry {
@@ -142,7 +149,7 @@ export class Yarns {
     const uniforms = {
       uPoints: { value: this.pointTexture }, uSaturation: { value: this.saturationTexture },
       uAcross0: vector(info.u), uAcross1: vector(info.v), uNormal: vector(info.n),
-      uMiddle: { value: MM * origin.dot(normal) },
+      uMiddle: { value: MM * origin.dot(normal) }, uMoved: this.bent, uHalfLoop: { value: info.steps_per_segment },
       uNatural: look.natural, uBar: look.bar, uScale: look.scale, uPixels: look.pixels,
     };
     material.onBeforeCompile = (shader) => {
@@ -156,8 +163,14 @@ export class Yarns {
           int node = int(aNode + 0.5);
           vSaturation = texelFetch(uSaturation, ivec2(node % ${WIDTH}, node / ${WIDTH}), 0).r * 255.0 / uScale;
           vSurface = vec2(aPlace.x + aPiece.x, aPlace.y);
-          // Between the yarns less of the sky is seen: by the height above the middle of the sheet.
-          float height = abs(dot(placed, uNormal) - uMiddle) / (2.0 * aPiece.w);
+          // Between the yarns less of the sky is seen: by the height above the middle of the sheet. Of a bent one that is found
+          // from the yarn's own waves: half a loop on, it is as far on the other side.
+          float i = aPiece.x + aPlace.x;
+          vec3 p = pointAt(i), across = mix(uAcross0, uAcross1, aYarn.w);
+          vec3 wave = 0.5 * (p - 0.5 * (pointAt(clamp(i - uHalfLoop, aPiece.y, aPiece.z)) + pointAt(clamp(i + uHalfLoop, aPiece.y, aPiece.z))));
+          vec3 face = normalize(cross(normalize(pointAt(min(i + uHalfLoop, aPiece.z)) - pointAt(max(i - uHalfLoop, aPiece.y))), across) + 1e-6);
+          float bent = abs(dot(placed - p + wave, face)), flat_ = abs(dot(placed, uNormal) - uMiddle);
+          float height = mix(flat_, bent, uMoved) / (2.0 * aPiece.w);
           // Yarns of a few pixels are seen at their mean brightness, or the cloth would flicker.
           float pixels = uPixels * projectionMatrix[1][1] * aPiece.w / max(1e-6, -(modelViewMatrix * vec4(placed, 1.0)).z);
           vFine = smoothstep(1.5, 6.0, pixels);

@@ -26,6 +26,7 @@ SeriesRow series_row(const World& world, const StepReport& last_step, const Meas
     row.wet_pore_area_m2 += m.wet_pore_area;
     row.wet_extent_warp_m = std::max(row.wet_extent_warp_m, m.extent_warp);
     row.wet_extent_weft_m = std::max(row.wet_extent_weft_m, m.extent_weft);
+    row.wet_height_m = std::max(row.wet_height_m, m.wet_height);
     row.max_saturation = std::max(row.max_saturation, m.max_saturation);
     row.pore_saturation = std::max(row.pore_saturation, m.pore_saturation);
     row.max_regain = std::max(row.max_regain, m.max_regain);
@@ -48,6 +49,7 @@ SeriesRow series_row(const World& world, const StepReport& last_step, const Meas
     row.wet_area_m2 += m.wet_area;
     row.wet_extent_warp_m = std::max(row.wet_extent_warp_m, m.extent_warp);
     row.wet_extent_weft_m = std::max(row.wet_extent_weft_m, m.extent_weft);
+    row.wet_height_m = std::max(row.wet_height_m, m.wet_height);
     row.max_saturation = std::max(row.max_saturation, m.max_saturation);
     row.contacts += cloth.crossings;
     row.absorbed_particles += cloth.absorbed_particles;
@@ -102,6 +104,7 @@ void visit_columns(const Row& r, Column&& column) {
   column("released_particles", r.released_particles);
   column("bounces", r.bounces);
   column("lowest_cloth_m", r.lowest_cloth_m);
+  column("wet_height_m", r.wet_height_m);
 }
 
 // One past the end of the last whole line at or after `from`.

@@ -27,6 +27,7 @@ struct SeriesRow {
   Real density_error = 0;       // peak of one particle in the last step
   DensityRecord density;        // of all steps so far
   std::uint64_t contacts = 0, absorbed_particles = 0, released_particles = 0, bounces = 0;
+  Real wet_height_m = 0;        // from the lowest wet node to the highest, of the textile where it is greatest
   Real lowest_cloth_m = 0;      // z of the lowest node of the soft sheets; 0 without any
   Real waiting_kg = 0, owed_kg = 0;  // between books and particles: part of the balance
 };

@@ -30,7 +30,7 @@ int step_bound_index(const char* name) {
 const std::vector<std::string>& live_columns() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = series_columns();
-    all.insert(all.end(), {"wet_height_m", "speed", "step_bound", "converged"});
+    all.insert(all.end(), {"speed", "step_bound", "converged"});
     return all;
   }();
   return names;
@@ -51,21 +51,8 @@ QuantisedPoints cloth_points(const CellCloth& cloth) {
 
 std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more) {
   std::vector<double> values = series_values(row);
-  values.insert(values.end(), {more.wet_height_m, more.speed, static_cast<double>(more.step_bound), more.converged ? 1.0 : 0.0});
+  values.insert(values.end(), {more.speed, static_cast<double>(more.step_bound), more.converged ? 1.0 : 0.0});
   return values;
-}
-
-Real wet_height(const World& world, const std::vector<std::vector<Real>>& saturations, Real wet_saturation) {
-  Real low = unlimited, high = -unlimited;
-  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
-    const std::vector<Vec3> places = nodes_in_world(world.textiles[t]);
-    for (std::size_t node = 0; node < saturations[t].size(); ++node) {
-      if (!(saturations[t][node] > wet_saturation)) continue;
-      const Real z = places[node].z;
-      low = std::min(low, z), high = std::max(high, z);
-    }
-  }
-  return high > low ? high - low : 0;
 }
 
 namespace {
@@ -254,7 +241,7 @@ std::string inspect_cloth(const CellCloth& cloth, std::size_t owner, std::size_t
 
 }  // namespace
 
-std::string inspect(const World& world, std::size_t textile_index, std::size_t node) {
+std::string inspect(const World& world, std::size_t textile_index, std::size_t node, const Vec3* known_place) {
   const std::size_t cloth = textile_index - world.textiles.size();
   if (textile_index >= world.textiles.size())
     return cloth < world.cell_cloths.size() ? inspect_cloth(world.cell_cloths[cloth], textile_index, node) : "";
@@ -262,7 +249,7 @@ std::string inspect(const World& world, std::size_t textile_index, std::size_t n
   const WettingModel& model = *textile.model;
   const YarnNetwork& network = textile.fabric->network;
   if (node >= model.nodes()) return "";
-  const Vec3 place = nodes_in_world(textile)[node];
+  const Vec3 place = known_place ? *known_place : nodes_in_world(textile)[node];
   Json json{{"type", "inspect"},
             {"textile", textile_index},
             {"node", node},

@@ -17,7 +17,6 @@ namespace imbibe::live {
 
 // The columns of a frame's values: those of series.csv, then these.
 struct LiveColumns {
-  Real wet_height_m = 0;   // vertical extent of the wet nodes
   Real speed = 0;          // simulated per wall-clock second
   int step_bound = 0;      // index into step_bounds()
   bool converged = true;
@@ -27,9 +26,6 @@ const std::vector<std::string>& step_bounds();       // names of what held a ste
 int step_bound_index(const char* name);
 
 std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more);
-
-// Vertical extent of all wet nodes, m.
-Real wet_height(const World& world, const std::vector<std::vector<Real>>& saturations, Real wet_saturation);
 
 // Centre lines are thinned to this many steps per half loop; the page draws round curves through them.
 inline constexpr int shown_steps_per_segment = 4;
@@ -51,7 +47,8 @@ struct SceneTexts {
 Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World& world, const Library& library,
                        const SceneTexts& texts);
 
-// What a node holds, as JSON text for the page; "" when there is no such node.
-std::string inspect(const World& world, std::size_t textile, std::size_t node);
+// What a node holds, as JSON text for the page; "" when there is no such node. `place`: where it is, m, when the world
+// does not know (a replayed sheet).
+std::string inspect(const World& world, std::size_t textile, std::size_t node, const Vec3* place = nullptr);
 
 }  // namespace imbibe::live

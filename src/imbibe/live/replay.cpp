@@ -7,6 +7,7 @@
 #include "imbibe/core/output_file.h"
 #include "imbibe/io/run_folder.h"
 #include "imbibe/live/capture.h"
+#include "imbibe/live/recall.h"
 #include "imbibe/scene/builder.h"
 #include "imbibe/view/vtp_reader.h"
 
@@ -136,6 +137,15 @@ void Replay::show(std::size_t number) {
   outlet.publish(last_);
 }
 
+void Replay::tell_contents(std::uint64_t viewer, const InspectMessage& message) {
+  if (recalled_ != frame_) recall(world_, frames_, pores_, frames_.times[frame_], places_);
+  recalled_ = frame_;
+  const bool woven = message.textile < places_.size() && message.node < places_[message.textile].size();
+  const Vec3* place = woven ? &places_[message.textile][message.node] : nullptr;
+  const std::string text = inspect(world_, message.textile, message.node, place);
+  outlet.tell(viewer, text.empty() ? error_event(0, "inspect", "there is no such yarn or pore") : text);
+}
+
 bool Replay::handle(const Command& command) {
   const auto& body = command.message.body;
   const std::size_t last = frames_.times.size() - 1;
@@ -155,6 +165,9 @@ bool Replay::handle(const Command& command) {
   } else if (const auto* speed = std::get_if<SpeedMessage>(&body)) {
     speed_ = speed->limit;
     outlet.tell(all_viewers, Json{{"type", "speed"}, {"swatch", 0}, {"limit", speed->limit}}.dump());
+    return false;
+  } else if (const auto* look = std::get_if<InspectMessage>(&body)) {
+    tell_contents(command.viewer, *look);
     return false;
   } else if (std::holds_alternative<SaveMessage>(body)) {
     outlet.tell(command.viewer, Json{{"type", "scene_text"}, {"swatch", 0}, {"text", scene_text_}}.dump());

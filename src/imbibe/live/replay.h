@@ -34,6 +34,7 @@ class Replay final : public Feed {
   void thread();
   bool handle(const Command& command);  // true: another frame is to be shown
   void show(std::size_t frame);
+  void tell_contents(std::uint64_t viewer, const InspectMessage& message);
   std::vector<double> values_at(Real time) const;
 
   Scene scene_;
@@ -45,6 +46,8 @@ class Replay final : public Feed {
   std::string scene_text_;
   std::shared_ptr<const Snapshot> last_;
   std::size_t frame_ = 0;
+  std::size_t recalled_ = std::size_t(-1);   // frame whose contents world_ holds
+  std::vector<std::vector<Vec3>> places_;    // of its nodes, per textile
   std::uint32_t number_ = 0;
   bool playing_ = true;
   Real speed_ = 1;           // recorded seconds per second; 0: every frame, as fast as it goes

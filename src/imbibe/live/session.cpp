@@ -162,7 +162,6 @@ void Session::publish() {
   auto snapshot = std::make_shared<Snapshot>(take_snapshot(world_, saturations, last_.get()));
   snapshot->generation = generation_, snapshot->number = ++number_, snapshot->flags = flags();
   LiveColumns more;
-  more.wet_height_m = wet_height(world_, saturations, scene_.measures.wet_saturation);
   more.speed = running_ ? speed_ : 0;
   more.step_bound = step_bound_index(report_.step_bound);
   more.converged = report_.converged;

@@ -301,7 +301,7 @@ World build_world(const Scene& scene, const Library& library, const RunningWorld
     world.domain = default_domain(world);
     if (scene.domain.lower) world.domain.lower = *scene.domain.lower;
     if (scene.domain.upper) world.domain.upper = *scene.domain.upper;
-    check_placements(scene, world, problems);
+    check_placements(scene, world, running ? &running->world : nullptr, problems);
     check_pipes(scene, world, problems);
   }
   if (!problems.empty()) throw InputError(std::move(problems));

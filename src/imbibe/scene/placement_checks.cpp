@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "imbibe/core/quantity.h"
+#include "imbibe/geometry/closest.h"
 
 namespace imbibe {
 namespace {
@@ -91,7 +92,22 @@ void check_overlaps(const Scene& scene, const std::vector<Source>& sources, std:
   }
 }
 
-void check_source(const Scene& scene, const World& world, std::size_t i, std::vector<Problem>& problems) {
+// m, from a point to the faces of a cloth on that sheet; < 0 inside the cloth.
+Real distance_to_cloth(const SoftSheet& soft, const Vec3& point) {
+  const Sheet& sheet = soft.sheet;
+  Real nearest = unlimited;
+  for (const auto& t : sheet.triangles)
+    nearest = std::min(nearest, norm(closest_on_triangle(point, sheet.position[t[0]], sheet.position[t[1]], sheet.position[t[2]]).point - point));
+  return nearest - 0.5 * soft.cloth.hand.thickness;
+}
+
+// The soft sheet that the world's textile lies on in the running world; null: it lies flat.
+const SoftSheet* bent_sheet(const World* running, std::size_t textile) {
+  const bool known = running && textile < running->textiles.size() && running->textiles[textile].cloth;
+  return known ? &running->textiles[textile].cloth->soft : nullptr;
+}
+
+void check_source(const Scene& scene, const World& world, const World* running, std::size_t i, std::vector<Problem>& problems) {
   const Source& s = world.sources[i];
   if (s.emitted >= s.count) return;  // it has fallen already, in a running world
   if (s.form == SourceForm::pipe) return;  // checked by check_pipes
@@ -99,8 +115,10 @@ void check_source(const Scene& scene, const World& world, std::size_t i, std::ve
   const auto fail = [&](const std::string& message) {
     problems.push_back(scene_problem(scene, key + ".centre", message));
   };
-  for (const Textile& textile : world.textiles) {
-    const Real depth = depth_inside(s, [&](const Vec3& p) { return distance_to_sheet(textile, p); });
+  for (std::size_t t = 0; t < world.textiles.size(); ++t) {
+    const Textile& textile = world.textiles[t];
+    const SoftSheet* bent = bent_sheet(running, t);
+    const Real depth = depth_inside(s, [&](const Vec3& p) { return bent ? distance_to_cloth(*bent, p) : distance_to_sheet(textile, p); });
     if (depth > 0) fail(fmt::format("'{}' reaches {} into textile '{}'; move it away by as much", s.name, mm(depth), textile.name));
   }
   for (const SolidBody& solid : world.solids) {
@@ -145,8 +163,8 @@ std::string key_of_source(const Scene& scene, std::size_t i) {
   return fmt::format("liquid.pipes[{}]", i - liquid.droppers.size());
 }
 
-void check_placements(const Scene& scene, const World& world, std::vector<Problem>& problems) {
-  for (std::size_t i = 0; i < world.sources.size(); ++i) check_source(scene, world, i, problems);
+void check_placements(const Scene& scene, const World& world, const World* running, std::vector<Problem>& problems) {
+  for (std::size_t i = 0; i < world.sources.size(); ++i) check_source(scene, world, running, i, problems);
   check_overlaps(scene, world.sources, problems);
 }
 

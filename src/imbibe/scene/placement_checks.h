@@ -18,6 +18,7 @@ Real distance_to_sheet(const Textile& textile, const Vec3& point);
 // The key of a world's source `i`, e.g. liquid.drops[1].
 std::string key_of_source(const Scene& scene, std::size_t i);
 
-void check_placements(const Scene& scene, const World& world, std::vector<Problem>& problems);
+// `running`, when given: the world that this one goes on from, whose soft sheets lie where they lie now.
+void check_placements(const Scene& scene, const World& world, const World* running, std::vector<Problem>& problems);
 
 }  // namespace imbibe

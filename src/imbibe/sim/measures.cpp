@@ -10,7 +10,8 @@ namespace imbibe {
 std::vector<Real> node_saturations(const Textile& textile, const Air& air) {
   const WettingModel& model = *textile.model;
   const Contents& contents = textile.contents;
-  const Contents in_air = conditioned_contents(model, air);
+  const bool all_wet = std::all_of(model.yarns.begin(), model.yarns.end(), [](const YarnWetting& y) { return y.wets; });
+  const Contents in_air = all_wet ? Contents{} : conditioned_contents(model, air);
   std::vector<Real> result(model.nodes());
   for (std::size_t node = 0; node < model.nodes(); ++node) {
     if (node >= model.segments || model.yarns[model.segment_type[node]].wets) {
@@ -45,8 +46,10 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
   IMBIBE_ASSERT(model.segments == network.segments() && model.pores == network.pores());
   const std::vector<Real> saturations = node_saturations(textile, air);
 
+  const std::vector<Vec3> places = nodes_in_world(textile);
+
   TextileMeasures m;
-  Range along_warp, along_weft;
+  Range along_warp, along_weft, upwards;
   std::vector<std::size_t> wet_segments(static_cast<std::size_t>(network.layers), 0);
   Real yarn_sum = 0, pore_sum = 0, pore_volume = 0;
   for (std::size_t node = 0; node < model.nodes(); ++node) {
@@ -63,6 +66,7 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
     if (!(s > params.wet_saturation)) continue;
     along_warp.include(network.node_centre(node).y);
     along_weft.include(network.node_centre(node).x);
+    upwards.include(places[node].z);
     if (node < model.segments) {
       ++wet_segments[static_cast<std::size_t>(network.layer_of(node))];
     } else {
@@ -77,6 +81,7 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
   if (pore_volume > 0) m.pore_saturation = pore_sum / pore_volume;
   m.extent_warp = along_warp.length();
   m.extent_weft = along_weft.length();
+  m.wet_height = upwards.length();
   return m;
 }
 
@@ -97,7 +102,14 @@ CellClothMeasures measure(const CellCloth& cloth, const MeasureParams& params) {
   m.extent_warp = along_warp.length(), m.extent_weft = along_weft.length();
   if (capacity > 0) m.mean_saturation = content / capacity;
   m.capacity_volume = capacity / 1000;
-  for (const Vec3& x : cloth.soft.sheet.position) m.lowest = std::min(m.lowest, x.z);
+  const std::vector<float> saturations = node_saturation(cloth);
+  Range upwards;
+  for (std::size_t n = 0; n < saturations.size(); ++n) {
+    const Real z = cloth.soft.sheet.position[n].z;
+    m.lowest = std::min(m.lowest, z);
+    if (saturations[n] > params.wet_saturation) upwards.include(z);
+  }
+  m.wet_height = upwards.length();
   return m;
 }
 

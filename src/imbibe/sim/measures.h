@@ -6,7 +6,7 @@
 // that a conditioned dry cloth is dry whatever its regain:
 //   s = (W - W_air) / (W_swollen - W_air), at least 0        W kg/kg, regain
 //
-// All lengths are material: measured in the flat sheet, whatever shape a soft sheet has taken.
+// All lengths but heights are material: measured in the flat sheet, whatever shape a soft sheet has taken.
 // Tested in tests/sim/measures_test.cpp.
 #pragma once
 
@@ -34,6 +34,7 @@ struct TextileMeasures {
   Real wet_pore_area = 0;    // m2: cells of wet pores
   Real extent_warp = 0;      // m: greatest distance of wet nodes along the warp direction (sheet y), centre to centre
   Real extent_weft = 0;      // m: along the weft direction (sheet x)
+  Real wet_height = 0;       // m: from the lowest wet node to the highest, as the cloth hangs
   Real mean_saturation = 0;  // of the yarns, weighted by their volume
   Real max_saturation = 0;   // of all nodes
   Real pore_saturation = 0;  // of the pores, weighted by their volume
@@ -45,7 +46,7 @@ TextileMeasures measure(const Textile& textile, const Air& air, const MeasurePar
 
 // The same of a cloth of cells. Lengths are material; `lowest` is where its lowest node hangs.
 struct CellClothMeasures {
-  Real wet_area = 0, extent_warp = 0, extent_weft = 0;
+  Real wet_area = 0, extent_warp = 0, extent_weft = 0, wet_height = 0;
   Real mean_saturation = 0, max_saturation = 0;  // over-full cells count with more than 1
   Real capacity_volume = 0;                      // m3 of water that it can hold: the weight of mean_saturation
   Real lowest = unlimited;                       // m, z of the lowest node
