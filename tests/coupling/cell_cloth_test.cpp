@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "imbibe/geometry/sampling.h"
-#include "imbibe/wetting/hem_drop.h"
 
 namespace imbibe {
 namespace {

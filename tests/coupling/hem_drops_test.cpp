@@ -5,7 +5,6 @@
 
 #include <numeric>
 
-#include "imbibe/wetting/hem_drop.h"
 #include "support/woven.h"
 
 namespace imbibe {
@@ -18,17 +17,17 @@ struct Hanging {
   Placement upright{.origin = {}, .u = {1, 0, 0}, .v = {0, 0, 1}, .n = {0, -1, 0}};
   ExchangeState exchange;
   Liquid liquid;
-  std::vector<std::uint8_t> at_hem;
+  Hem hem;
   Real neck = 0;
 
   Hanging() {
     exchange.waiting_kg.assign(fabric.network.nodes(), 0);
     liquid.particle_mass = 1e-6;
     neck = hem_neck(liquid.kind.surface_tension, liquid.kind.density, 9.81);
-    find_hem(fabric.network, upright, down, neck, at_hem);
+    find_hem(fabric.network, upright, down, neck, hem);
   }
   ReleaseReport release() {
-    return release_hem_drops(fabric.network, upright, at_hem, down, neck, {}, exchange, liquid);
+    return release_hem_drops(fabric.network, upright, hem, down, neck, {}, exchange, liquid);
   }
   Real waiting() const { return std::accumulate(exchange.waiting_kg.begin(), exchange.waiting_kg.end(), Real{0}); }
 };
@@ -41,11 +40,11 @@ TEST(HemDrops, OnlyTheLowerEdgeHoldsDrops) {
     const Real to_hem = c.y + 0.5 * n.size_y, to_side = 0.5 * n.size_x - std::abs(c.x);
     if (std::abs(to_hem - to_side) < 1e-9) continue;  // on the diagonal both edges are as near
     const bool lowest = to_hem < to_side && to_hem <= cloth.neck;
-    EXPECT_EQ(cloth.at_hem[k] != 0, lowest) << c.x << " " << c.y;
+    EXPECT_EQ(cloth.hem.holds[k] != 0, lowest) << c.x << " " << c.y;
   }
-  std::vector<std::uint8_t> flat;
+  Hem flat;
   find_hem(n, Placement{}, down, cloth.neck, flat);  // a level cloth has no lower edge
-  EXPECT_EQ(std::count(flat.begin(), flat.end(), 1), 0);
+  EXPECT_TRUE(flat.nodes.empty());
 }
 
 TEST(HemDrops, OneFallsAtTatesMassAndNotBefore) {
@@ -53,8 +52,8 @@ TEST(HemDrops, OneFallsAtTatesMassAndNotBefore) {
   const Real tate = falling_drop_kg(cloth.neck, 0.0728, 9.81);
   EXPECT_NEAR(tate, 57.2e-6, 0.3e-6);  // 0.6 2 pi 2.045 mm gamma/g
   std::vector<Index> middle;
-  for (Index k = 0; k < cloth.at_hem.size(); ++k)
-    if (cloth.at_hem[k] && std::abs(cloth.fabric.network.node_centre(k).x) < 1.5e-3) middle.push_back(k);
+  for (Index k = 0; k < cloth.hem.holds.size(); ++k)
+    if (cloth.hem.holds[k] && std::abs(cloth.fabric.network.node_centre(k).x) < 1.5e-3) middle.push_back(k);
   ASSERT_GT(middle.size(), 3u);
   for (const Index k : middle) cloth.exchange.waiting_kg[k] = 0.9 * tate / static_cast<Real>(middle.size());
   EXPECT_EQ(cloth.release().particles, 0u);
@@ -72,10 +71,29 @@ TEST(HemDrops, OneFallsAtTatesMassAndNotBefore) {
   EXPECT_EQ(cloth.release().particles, 0u);
 }
 
+TEST(HemDrops, WhatHangsIsShownAsDropsOfItsMassUnderTheHem) {
+  Hanging cloth;
+  const YarnNetwork& n = cloth.fabric.network;
+  Real total = 0;
+  for (const Index k : cloth.hem.nodes) {  // one drop at the left, one at the right
+    const Real x = n.node_centre(k).x;
+    if (std::abs(std::abs(x) - 6e-3) > 1e-3) continue;
+    cloth.exchange.waiting_kg[k] = x < 0 ? 1e-6 : 2e-6;
+    total += cloth.exchange.waiting_kg[k];
+  }
+  const std::vector<HangingDrop> drops = drops_at_hem(n, cloth.upright, cloth.hem, cloth.neck, cloth.exchange);
+  ASSERT_EQ(drops.size(), 2u);
+  EXPECT_NEAR(drops[0].kg + drops[1].kg, total, 1e-12 * total);
+  EXPECT_NEAR(drops[0].kg, 2 * drops[1].kg, 0.3 * drops[0].kg);
+  EXPECT_GT(drops[0].at.x, 4e-3);
+  EXPECT_LT(drops[1].at.x, -4e-3);
+  for (const HangingDrop& drop : drops) EXPECT_NEAR(drop.at.z, -0.5 * n.size_y, 1e-9);
+}
+
 TEST(HemDrops, WhatComesTooFastForDropsLeavesAsAStream) {
   Hanging cloth;
-  for (Index k = 0; k < cloth.at_hem.size(); ++k)
-    if (cloth.at_hem[k]) cloth.exchange.waiting_kg[k] = 20e-6;
+  for (Index k = 0; k < cloth.hem.holds.size(); ++k)
+    if (cloth.hem.holds[k]) cloth.exchange.waiting_kg[k] = 20e-6;
   EXPECT_GT(cloth.release().particles, 100u);
   cloth.release();  // what is born now keeps clear of the first too
   for (std::size_t i = 0; i < cloth.liquid.particles.size(); ++i)

@@ -89,6 +89,8 @@ TEST(ClothScene, PinsThatDoNotExistAreNamed) {
   expect_refused("corner: top_left", "corner: top_leff", "sheet.soft.pins[0]", "top_left");
   expect_refused("edge: right", "edge: north", "sheet.soft.pins[1]", "north");
   expect_refused("{corner: top_left}", "{corner: top_left, edge: left}", "pins[0]", "exactly one");
+  expect_refused("{corner: top_left}", "{point: [5 m, 0]}", "pins[0]", "off the cloth");
+  expect_refused("{corner: top_left}", "{point: [-30 mm, 0]}", "pins[0]", "off the cloth");
 }
 
 TEST(ClothScene, KeyTimesOfAPinRise) {

@@ -8,7 +8,6 @@
 #include "imbibe/coupling/hem_drops.h"
 #include "imbibe/geometry/direction.h"
 #include "imbibe/wetting/evaporation.h"
-#include "imbibe/wetting/hem_drop.h"
 
 namespace imbibe {
 namespace {
@@ -129,14 +128,12 @@ void carry(CellCloth& cloth, std::span<const std::uint8_t> held, Index from, Ind
   sheet.added_mass[b] += kg;
 }
 
-// In particle spacings: how far under the cloth's middle a particle hangs whose liquid wets it (it touches; the liquid's
-// solver keeps it so), how near to others it may be born (nearer it would start with a pressure burst), and what is
-// nearer to the sheet than hanging ones is moved off it.
-constexpr Real hanging = 0.6, clear_of_others = 0.8, clear_of_sheet = 0.4;
+// In particle spacings: what is nearer to the sheet than hanging ones is moved off it.
+constexpr Real clear_of_sheet = 0.4;
 
 // Where what leaks at a cell may hang: under the sheet there, around that place, and one spacing lower.
 std::array<Vec3, 14> birth_places(const CellCloth& cloth, const MovingMesh& surface, Index cell, const Vec3& down, Real spacing) {
-  const Vec3 hang = cloth.soft.sheet.position[(*cloth.node_of_cell)[cell]] + hanging * spacing * down;
+  const Vec3 hang = cloth.soft.sheet.position[(*cloth.node_of_cell)[cell]] + hanging_spacings * spacing * down;
   const Vec3 a = any_perpendicular(down), b = cross(down, a);
   std::array<Vec3, 14> places;
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -146,7 +143,7 @@ std::array<Vec3, 14> birth_places(const CellCloth& cloth, const MovingMesh& surf
     // Clear of the sheet, on the side where it hangs.
     const NearestOnSheet near = nearest_on(surface, place, clear_of_sheet * spacing);
     if (near.at.triangle != no_index)
-      place = near.point + hanging * spacing * (dot(near.normal, down) >= 0 ? near.normal : -near.normal);
+      place = near.point + hanging_spacings * spacing * (dot(near.normal, down) >= 0 ? near.normal : -near.normal);
     places[k] = place;
   }
   return places;
@@ -213,8 +210,6 @@ void draw_back(CellCloth& cloth) {
 }
 
 // Drops fall where they have grown to their greatest mass; what comes faster than drops can fall leaves as a stream.
-constexpr Real drops_of_a_stream = 3;
-
 void release(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Vec3& gravity, const SolidAt& solid_at,
              CellExchangeReport& report) {
   const Real mass = liquid.particle_mass, spacing = liquid.spacing(), neck = cloth.params.drop_neck;
@@ -230,9 +225,9 @@ void release(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const 
   Bounds region;
   for (const Vec3& x : cloth.soft.sheet.position) region.include(x);
   const Vec3 down = normalized(gravity);
-  const std::vector<Vec3> drop = hanging_drop(count, spacing, hanging, down);
+  const std::vector<Vec3> drop = hanging_drop(count, spacing, hanging_spacings, down);
   region.grow(norm(drop.back()) + 4 * spacing);
-  scratch.occupancy.reset(liquid.particles.position, region, clear_of_others * spacing);
+  scratch.occupancy.reset(liquid.particles.position, region, clear_spacings * spacing);
   const Births births{cloth, scratch, liquid, solid_at, report};
   for (const Index cell : waiting) {
     if (!gather_waiting(cloth, scratch.held, waiting, cell, drop_kg, 2 * neck)) continue;
@@ -276,6 +271,16 @@ void fit_cells(CellCloth& cloth) {
 Real cell_kg(const CellCloth& cloth) { return total_kg(cloth.contents); }
 Real waiting_kg(const CellCloth& cloth) {
   return std::accumulate(cloth.waiting_kg.begin(), cloth.waiting_kg.end(), Real{0});
+}
+
+std::vector<HangingDrop> hanging_drops(const CellCloth& cloth) {
+  const auto place = [&](Index c) -> const Vec3& { return cloth.soft.sheet.position[(*cloth.node_of_cell)[c]]; };
+  std::vector<Index> cells(cloth.waiting_kg.size());
+  std::iota(cells.begin(), cells.end(), Index{0});
+  std::vector<HangingDrop> drops;
+  const auto near = [&](Index a, Index b) { return norm(place(a) - place(b)) <= 2 * cloth.params.drop_neck; };
+  for (const auto& [cell, kg] : gather_drops(cells, cloth.waiting_kg, near)) drops.push_back({place(cell), kg});
+  return drops;
 }
 
 std::vector<float> node_saturation(const CellCloth& cloth) {

@@ -5,7 +5,7 @@
 //             bounces it, or takes it when `bounce` is off), with all its mass and momentum
 //   moves     parcels carry their mass, and the momentum of the node they leave, to the node they reach
 //   leaks     parcels wait at the cell where they come out, as a drop that hangs there, until it has the mass at which drops
-//             fall (wetting/hem_drop.h): then its particles are born, as a drop under the cloth
+//             fall (hem_drops.h): then its particles are born, as a drop under the cloth
 //   weighs    added mass of a node = contents and waiting mass of its cell;  stiffness x (1 - alpha s), damping + beta s
 //
 // alpha wet softening, beta s, s saturation of the cell. Gravity along the cloth, per node the mean over its triangles
@@ -16,6 +16,7 @@
 #include <memory>
 #include <string>
 
+#include "imbibe/coupling/hem_drops.h"
 #include "imbibe/coupling/release.h"
 #include "imbibe/coupling/soft_sheet.h"
 #include "imbibe/wetting/cells.h"
@@ -31,8 +32,9 @@ struct WetClothParams {
 template <class V>
 void describe(V& v, WetClothParams& p) {
   v.value("softening", p.softening,
-          {.min = 0, .max = 0.95, .help = "share of the stiffness lost when full: viscose 0.5, wool 0.4, nylon 0.2, cotton 0"});
-  v.value("damping", p.damping, {.unit = "s", .shown = "ms", .min = 0, .max = 1, .help = "inner damping added when full"});
+          {.min = 0, .max = 0.95, .help = "share of the stiffness lost when full: viscose 0.5, wool 0.4, nylon 0.2, cotton 0; under a "
+                                          "network 0: by fibre"});
+  v.value("damping", p.damping, {.unit = "s", .shown = "ms", .min = 0, .max = 1, .help = "inner damping added when full; under a network 0: by fibre"});
 }
 
 struct CellCloth {
@@ -53,6 +55,9 @@ void fit_cells(CellCloth& cloth);
 
 Real cell_kg(const CellCloth& cloth);      // in cells
 Real waiting_kg(const CellCloth& cloth);   // leaked, not yet free
+
+// The drops that hang where it leaks: they add up to waiting_kg.
+std::vector<HangingDrop> hanging_drops(const CellCloth& cloth);
 
 // Contents of the cells over their capacity, per node of the sheet (for pictures and files).
 std::vector<float> node_saturation(const CellCloth& cloth);

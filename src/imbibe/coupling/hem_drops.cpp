@@ -7,16 +7,12 @@
 #include "imbibe/coupling/footprint.h"
 #include "imbibe/geometry/direction.h"
 #include "imbibe/liquid/occupancy.h"
-#include "imbibe/wetting/hem_drop.h"
 
 namespace imbibe {
 namespace {
 
 constexpr Real neck_of_capillary_length = 0.75;
-constexpr Real steep = 0.5;            // cosine from which an edge looks down: drops run off steeper ones
-constexpr Real hang = 0.6;             // spacings below the edge, as under a face
-constexpr Real clear_spacings = 0.8;   // no particle is born nearer to another
-constexpr Real drops_of_a_stream = 3;  // what comes faster than drops can fall leaves as it comes
+constexpr Real steep = 0.5;  // cosine from which an edge looks down: drops run off steeper ones
 
 Real edge_distance(const YarnNetwork& n, const Vec3& c) {
   return std::min(0.5 * n.size_x - std::abs(c.x), 0.5 * n.size_y - std::abs(c.y));
@@ -72,26 +68,34 @@ Real hem_neck(Real surface_tension, Real density, Real gravity) {
   return gravity > 0 ? neck_of_capillary_length * std::sqrt(surface_tension / (density * gravity)) : 0;
 }
 
-void find_hem(const YarnNetwork& network, const ClothPlace& place, const Vec3& gravity, Real neck,
-              std::vector<std::uint8_t>& at_hem) {
-  at_hem.assign(network.nodes(), 0);
+void find_hem(const YarnNetwork& network, const ClothPlace& place, const Vec3& gravity, Real neck, Hem& hem) {
+  hem.holds.assign(network.nodes(), 0);
+  hem.nodes.clear();
   const Real g = norm(gravity);
   if (!(g > 0)) return;
-  for (std::size_t k = 0; k < network.nodes(); ++k) {
+  for (Index k = 0; k < network.nodes(); ++k) {
     const Vec3& c = network.node_centre(k);
     if (edge_distance(network, c) > neck) continue;
-    at_hem[k] = dot(edge_near(network, place, c).outward, gravity) > steep * g;
+    if (!(dot(edge_near(network, place, c).outward, gravity) > steep * g)) continue;
+    hem.holds[k] = 1;
+    hem.nodes.push_back(k);
   }
 }
 
-CaughtAtHem catch_at_hem(const YarnNetwork& network, const ClothPlace& place, std::span<const std::uint8_t> at_hem,
-                         const Vec3& gravity, Real neck, SoftSheet& soft, std::span<const std::uint8_t> held,
-                         ExchangeState& exchange, Liquid& liquid, std::span<std::uint8_t> dead) {
+std::vector<HangingDrop> drops_at_hem(const YarnNetwork& network, const ClothPlace& place, const Hem& hem, Real neck,
+                                      const ExchangeState& exchange) {
+  const auto near = [&](Index a, Index b) { return norm(network.node_centre(a) - network.node_centre(b)) <= 2 * neck; };
+  std::vector<HangingDrop> drops;
+  for (const auto& [node, kg] : gather_drops(hem.nodes, exchange.waiting_kg, near))
+    drops.push_back({edge_near(network, place, network.node_centre(node)).at, kg});
+  return drops;
+}
+
+CaughtAtHem catch_at_hem(const YarnNetwork& network, const ClothPlace& place, const Hem& hem, const Vec3& gravity,
+                         Real neck, SoftSheet& soft, std::span<const std::uint8_t> held, ExchangeState& exchange,
+                         Liquid& liquid, std::span<std::uint8_t> dead) {
   CaughtAtHem caught;
-  std::vector<Index> hem;
-  for (Index k = 0; k < at_hem.size(); ++k)
-    if (at_hem[k]) hem.push_back(k);
-  if (hem.empty()) return caught;
+  if (hem.nodes.empty()) return caught;
   const Real stopped = 2 * norm(gravity) * neck, reach_z = 0.5 * network.thickness + touch_distance(liquid.spacing());
   Particles& particles = liquid.particles;
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -100,7 +104,7 @@ CaughtAtHem catch_at_hem(const YarnNetwork& network, const ClothPlace& place, st
     if (!(std::abs(p.z) < reach_z) || edge_distance(network, p) > neck) continue;
     const Vec3 velocity(v.x, v.y, v.z);
     if (squared_norm(velocity - place.velocity_at(p)) > stopped) continue;
-    const Index node = *std::min_element(hem.begin(), hem.end(), [&](Index a, Index b) {
+    const Index node = *std::min_element(hem.nodes.begin(), hem.nodes.end(), [&](Index a, Index b) {
       return squared_norm(network.node_centre(a) - p) < squared_norm(network.node_centre(b) - p);
     });
     if (norm(network.node_centre(node) - p) > neck) continue;  // at an edge that holds no drops
@@ -114,22 +118,22 @@ CaughtAtHem catch_at_hem(const YarnNetwork& network, const ClothPlace& place, st
   return caught;
 }
 
-ReleaseReport release_hem_drops(const YarnNetwork& network, const ClothPlace& place,
-                                std::span<const std::uint8_t> at_hem, const Vec3& gravity, Real neck,
-                                const SolidAt& solid_at, ExchangeState& exchange, Liquid& liquid) {
+ReleaseReport release_hem_drops(const YarnNetwork& network, const ClothPlace& place, const Hem& hem, const Vec3& gravity,
+                                Real neck, const SolidAt& solid_at, ExchangeState& exchange, Liquid& liquid) {
   ReleaseReport report;
   const Real mass = liquid.particle_mass, spacing = liquid.spacing();
   if (mass <= 0) return report;
-  std::vector<Index> waiting;
   Real total = 0;
-  for (Index k = 0; k < at_hem.size(); ++k)
-    if (at_hem[k] && exchange.waiting_kg[k] > 0) waiting.push_back(k), total += exchange.waiting_kg[k];
+  for (const Index k : hem.nodes) total += std::max(exchange.waiting_kg[k], 0.0);
   const Real falling = falling_drop_kg(neck, liquid.kind.surface_tension, norm(gravity));
   if (total < std::max(mass, falling)) return report;
+  std::vector<Index> waiting;
+  for (const Index k : hem.nodes)
+    if (exchange.waiting_kg[k] > 0) waiting.push_back(k);
   const auto count = static_cast<std::size_t>(std::max(1.0, std::round(falling / mass)));
   const Real drop_kg = static_cast<Real>(count) * mass;
   const Vec3 down = normalized(gravity);
-  const std::vector<Vec3> drop = hanging_drop(count, spacing, hang, down);
+  const std::vector<Vec3> drop = hanging_drop(count, spacing, hanging_spacings, down);
   std::stable_sort(waiting.begin(), waiting.end(),
                    [&](Index a, Index b) { return exchange.waiting_kg[a] > exchange.waiting_kg[b]; });
   Occupancy occupancy;

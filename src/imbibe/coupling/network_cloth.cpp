@@ -10,33 +10,29 @@ namespace {
 constexpr Real bridged_at = 0.1;      // saturation of the yarns from which all crowns that meet are bridged
 constexpr Real waking_share = 0.005;  // of its mass that a resting sheet gains or loses before it is stepped again
 
-// What the cloth is to carry, per node of the sheet.
-std::vector<Real> wanted_mass(const NetworkCloth& cloth, const Contents& contents, const ExchangeState& exchange) {
+// What the cloth is to carry, per node of the sheet: scratch.sheet_kg.
+void find_wanted_mass(const NetworkCloth& cloth, const Contents& contents, const ExchangeState& exchange,
+                      WeighScratch& scratch) {
   const std::vector<Real>& air = *cloth.air_kg;
-  std::vector<Real> held(air.size());
+  std::vector<Real>&held = scratch.network_kg, &wanted = scratch.sheet_kg;
+  held.resize(air.size());
   for (std::size_t k = 0; k < held.size(); ++k) {
     held[k] = contents.liquid_kg[k] - air[k] + exchange.waiting_kg[k];
     if (k < contents.sorbed_kg.size()) held[k] += contents.sorbed_kg[k];
   }
-  std::vector<Real> wanted(cloth.soft.sheet.size(), 0);
+  wanted.assign(cloth.soft.sheet.size(), 0);
   add_to_sheet(*cloth.embedding, cloth.soft.sheet, held, wanted);
   // What is borrowed lies among what is held; its place makes no difference that could be seen.
   Real more = 0;
   for (const Real kg : wanted) more += std::max(kg, 0.0);
   const Real share = more > 0 ? std::min(1.0, cloth.borrowed_kg / more) : 0;
   for (Real& kg : wanted) kg -= share * std::max(kg, 0.0);
-  return wanted;
 }
 
-// Means over the yarns at each node of the sheet, by their length.
-struct NodeMeans {
-  std::vector<Real> length, swollen, softened, filled;
-};
-
-NodeMeans means_of(const NetworkCloth& cloth, const YarnNetwork& network, const WettingModel& model,
-                   const Contents& contents) {
+// Sums over the yarns at each node of the sheet, by their length.
+void sum_yarns(const NetworkCloth& cloth, const YarnNetwork& network, const WettingModel& model, const Contents& contents,
+               WeighScratch& m) {
   const Sheet& sheet = cloth.soft.sheet;
-  NodeMeans m;
   for (auto* values : {&m.length, &m.swollen, &m.softened, &m.filled}) values->assign(sheet.size(), 0);
   for (std::size_t s = 0; s < network.segments(); ++s) {
     const YarnWetting& yarn = model.yarns[model.segment_type[s]];
@@ -55,7 +51,6 @@ NodeMeans means_of(const NetworkCloth& cloth, const YarnNetwork& network, const 
       m.softened[n] += weight * own * swollen;
     }
   }
-  return m;
 }
 
 }  // namespace
@@ -78,10 +73,13 @@ Real cling_pressure(Real crowns_per_area, Real crown_radius, Real surface_tensio
 }
 
 void weigh(NetworkCloth& cloth, std::span<const std::uint8_t> held, const YarnNetwork& network,
-           const WettingModel& model, const Contents& contents, const ExchangeState& exchange, const MassLeft& left) {
+           const WettingModel& model, const Contents& contents, const ExchangeState& exchange, const MassLeft& left,
+           WeighScratch& scratch) {
   Sheet& sheet = cloth.soft.sheet;
-  set_added_mass(cloth.soft, held, wanted_mass(cloth, contents, exchange), left);
-  const NodeMeans means = means_of(cloth, network, model, contents);
+  find_wanted_mass(cloth, contents, exchange, scratch);
+  set_added_mass(cloth.soft, held, scratch.sheet_kg, left);
+  sum_yarns(cloth, network, model, contents, scratch);
+  const WeighScratch& means = scratch;
   const YarnType& yarn = network.yarn_types.front();
   const Real cling = cling_pressure(0.5 / (network.pitch_x * network.pitch_y), yarn.radius,
                                     model.liquid.surface_tension, portable::cos(yarn.fibre.receding_angle));

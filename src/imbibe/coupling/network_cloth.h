@@ -40,8 +40,13 @@ NetworkCloth make_network_cloth(SoftSheet soft, const YarnNetwork& network, cons
 // Pa, the greatest pull of liquid bridges at one face.
 Real cling_pressure(Real crowns_per_area, Real crown_radius, Real surface_tension, Real cos_receding);
 
+// Work space of weigh(), kept between steps.
+struct WeighScratch {
+  std::vector<Real> network_kg, sheet_kg;                 // what is held, per node of each
+  std::vector<Real> length, swollen, softened, filled;    // per node of the sheet, means over yarns by length
+};
 // Sets added mass, stiffness, damping and cling of the sheet's nodes.
 void weigh(NetworkCloth& cloth, std::span<const std::uint8_t> held, const YarnNetwork& network, const WettingModel& model,
-           const Contents& contents, const ExchangeState& exchange, const MassLeft& left = {});
+           const Contents& contents, const ExchangeState& exchange, const MassLeft& left, WeighScratch& scratch);
 
 }  // namespace imbibe

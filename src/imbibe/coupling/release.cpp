@@ -5,13 +5,13 @@
 namespace imbibe {
 namespace {
 
-constexpr Real clear_spacings = 0.8;  // no particle is born nearer to another
+constexpr Real clear_of_others = 0.8;  // spacings: no particle is born nearer to another
 
 // The particles beside the two faces, in sheet coordinates, by the bins of the face map.
 class NearFaces {
  public:
   NearFaces(const Liquid& liquid, const YarnNetwork& network, const ClothPlace& cloth, const FaceMap& map)
-      : map_(map), clearance_(clear_spacings * liquid.spacing()) {
+      : map_(map), clearance_(clear_of_others * liquid.spacing()) {
     const Real reach = 0.5 * network.thickness + 2 * liquid.spacing();
     for (const Float4& x : liquid.particles.position) {
       const Vec3 p = cloth.to_sheet({x.x, x.y, x.z});

@@ -6,27 +6,35 @@
 #include "imbibe/sim/measures.h"
 
 namespace imbibe {
+namespace {
 
-PolyData liquid_poly_data(const Liquid& liquid) {
+constexpr std::int32_t hanging_class = 3;
+
+}  // namespace
+
+PolyData liquid_poly_data(const Liquid& liquid, std::span<const Vec3> hanging) {
   const Particles& particles = liquid.particles;
-  const std::size_t count = particles.size();
+  const std::size_t free = particles.size(), count = free + hanging.size();
   PolyData data;
   data.points.reserve(count);
-  std::vector<float> velocity;
+  std::vector<float> velocity, density = particles.density, pressure = particles.pressure;
   velocity.reserve(3 * count);
-  std::vector<std::int32_t> id(count), kind(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<std::int32_t> id(count, -1), kind(count, hanging_class);
+  for (std::size_t i = 0; i < free; ++i) {
     const Float4 &x = particles.position[i], &v = particles.velocity[i];
     data.points.push_back({x.x, x.y, x.z});
     velocity.insert(velocity.end(), {v.x, v.y, v.z});
     id[i] = static_cast<std::int32_t>(particles.id[i]);
     kind[i] = static_cast<std::int32_t>(particles.kind[i]);
   }
+  for (const Vec3& place : hanging) data.points.push_back(Vec3f(place));
+  velocity.resize(3 * count, 0);
+  density.resize(count, static_cast<float>(liquid.kind.density)), pressure.resize(count, 0);
   data.add("velocity", std::move(velocity), 3);
-  data.add("density", particles.density);
+  data.add("density", std::move(density));
   data.add("mass", std::vector<float>(count, static_cast<float>(liquid.particle_mass)));
-  data.add("pressure", particles.pressure);
-  data.add("class", std::move(kind));  // 0 inside, 1 at the vapour, 2 at a solid
+  data.add("pressure", std::move(pressure));
+  data.add("class", std::move(kind));  // 0 inside, 1 at the vapour, 2 at a solid, 3 hanging at a cloth
   data.add("id", std::move(id));
   return data;
 }

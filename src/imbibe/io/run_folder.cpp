@@ -250,7 +250,7 @@ void RunFolder::write_frame(Collection& collection, const PolyData& data, const 
 
 bool RunFolder::write_output(const World& world, const StepReport& last_step) {
   if (skip_until_ && world.time <= *skip_until_) return false;
-  if (with_files_ && setup_.particle_files) write_frame(collections_[0], liquid_poly_data(world.liquid), world);
+  if (with_files_ && setup_.particle_files) write_frame(collections_[0], liquid_poly_data(world.liquid, hanging_liquid(world)), world);
   if (with_files_ && setup_.textile_files) {
     for (std::size_t i = 0; i < world.textiles.size(); ++i) {
       const std::vector<Real> saturations = node_saturations(world.textiles[i], world.air);

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -109,7 +110,8 @@ class RunFolder {
 };
 
 // The data of the .vtp files.
-PolyData liquid_poly_data(const Liquid& liquid);
+// `hanging`: particles of drops that hang at cloths, of class 3 and without an id (-1).
+PolyData liquid_poly_data(const Liquid& liquid, std::span<const Vec3> hanging = {});
 // `saturations`: node_saturations(). Every point of a yarn's line carries the values of the segment it lies on.
 PolyData textile_poly_data(const Textile& textile, const std::vector<Real>& saturations);
 PolyData pore_poly_data(const Textile& textile, const std::vector<Real>& saturations);

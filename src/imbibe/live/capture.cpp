@@ -85,10 +85,16 @@ void add_cloth(const CellCloth& cloth, std::size_t owner, const Snapshot* before
 Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>& saturations, const Snapshot* before) {
   Snapshot s;
   const auto& positions = world.liquid.particles.position;
-  const bool still = before && before->particles && before->particles->size() == positions.size() && world.pace.resting;
+  const std::vector<Vec3> hanging = hanging_liquid(world);
+  const std::size_t free = positions.size(), count = free + hanging.size();
+  const bool still = before && before->particles && before->particles->size() == count && world.pace.resting;
   s.particles = still ? before->particles
                       : std::make_shared<const QuantisedPoints>(
-                            quantise(positions.size(), [&](std::size_t i) { return positions[i]; }));
+                            quantise(count, [&](std::size_t i) {
+                              if (i < free) return positions[i];
+                              const Vec3f p(hanging[i - free]);
+                              return Float4{p.x, p.y, p.z, 0};
+                            }));
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
     s.yarns.push_back(moved_yarns(world.textiles[t], before ? before->yarns[t] : nullptr));
     auto bytes = std::make_shared<Saturations>(saturations[t].size());

@@ -50,15 +50,36 @@ Sheet free_form_sheet(const TextileSpec& spec, const SoftSheetSpec& soft) {
   return make_sheet(file.mesh, file.uv, areal_mass_of(spec, soft), *soft.mesh);
 }
 
+// How far apart nodes are, m: the diagonal of a grid's cell, or of a square of a mesh's mean area per node.
+Real node_spacing(const Sheet& sheet) {
+  if (sheet.is_grid()) return portable::hypot(sheet.u[1] - sheet.u[0], sheet.v[sheet.columns] - sheet.v[0]);
+  Real area = 0;
+  for (const Real a : node_areas(sheet)) area += a;
+  return std::sqrt(2 * area / static_cast<Real>(sheet.size()));
+}
+
+// The node at a point (m from the lower left corner of the cloth's outline). Throws InputError for a point off the cloth.
+Index node_at(const Sheet& sheet, const std::array<Real, 2>& point) {
+  const auto [left, right] = std::minmax_element(sheet.u.begin(), sheet.u.end());
+  const auto [bottom, top] = std::minmax_element(sheet.v.begin(), sheet.v.end());
+  const Real u = *left + point[0], v = *bottom + point[1];
+  const Index node = node_nearest(sheet, u, v);
+  const Real away = portable::hypot(sheet.u[node] - u, sheet.v[node] - v), spacing = node_spacing(sheet);
+  // A point of a grid is at most half a diagonal from a node; meshes are not that even.
+  if (away > (sheet.is_grid() ? 0.5 + 1e-9 : 1) * spacing) {
+    Problem off;
+    off.message = fmt::format("({:.4g}, {:.4g}) mm is off the cloth: {:.4g} mm from its nearest node, of a cloth of {:.4g} x {:.4g} mm",
+                              point[0] * 1e3, point[1] * 1e3, away * 1e3, (*right - *left) * 1e3, (*top - *bottom) * 1e3);
+    throw InputError(std::vector<Problem>{off});
+  }
+  return node;
+}
+
 void add_pin(Sheet& sheet, const PinSpec& pin) {
   std::vector<Index> nodes;
   if (pin.corner) nodes = nodes_of_corner(sheet, *pin.corner);
   else if (pin.edge) nodes = nodes_of_edge(sheet, *pin.edge);
-  else if (pin.point) {
-    const Real left = *std::min_element(sheet.u.begin(), sheet.u.end());
-    const Real bottom = *std::min_element(sheet.v.begin(), sheet.v.end());
-    nodes = {node_nearest(sheet, left + (*pin.point)[0], bottom + (*pin.point)[1])};
-  }
+  else if (pin.point) nodes = {node_at(sheet, *pin.point)};
   PinPath path;
   for (const PinMoveSpec& key : pin.motion) path.keys.push_back({key.time, key.displacement});
   pin_nodes(sheet, nodes, path, pin.until.value_or(std::numeric_limits<Real>::infinity()));
@@ -195,7 +216,8 @@ NetworkCloth build_network_cloth(const Scene& scene, std::size_t i, const Textil
                          spec.sheet.soft ? spec.sheet.soft->wet : WetClothParams{});
   std::vector<std::uint8_t> held;
   find_held(cloth.soft, held);
-  weigh(cloth, held, built.fabric->network, *built.model, built.contents, built.exchange);
+  WeighScratch scratch;
+  weigh(cloth, held, built.fabric->network, *built.model, built.contents, built.exchange, {}, scratch);
   return cloth;
 }
 

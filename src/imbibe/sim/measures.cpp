@@ -4,6 +4,7 @@
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
+#include "imbibe/coupling/hem_drops.h"
 
 namespace imbibe {
 
@@ -136,6 +137,32 @@ std::vector<Vec3> points_in_world(const Textile& textile) {
 std::vector<Vec3> nodes_in_world(const Textile& textile) {
   const YarnNetwork& network = textile.fabric->network;
   return in_world(textile, network.nodes(), [&](std::size_t i) { return network.node_centre(i); });
+}
+
+std::vector<Vec3> hanging_liquid(const World& world) {
+  std::vector<Vec3> places;
+  const Real mass = world.liquid.particle_mass, g = norm(world.gravity);
+  if (!(mass > 0) || !(g > 0)) return places;
+  const Vec3 down = normalized(world.gravity);
+  const auto add = [&](const std::vector<HangingDrop>& drops) {
+    for (const HangingDrop& drop : drops) {
+      const auto count = static_cast<std::size_t>(std::floor(drop.kg / mass + 0.5));
+      for (const Vec3& p : hanging_drop(count, world.liquid.spacing(), hanging_spacings, down)) places.push_back(drop.at + p);
+    }
+  };
+  for (const Textile& textile : world.textiles) {
+    if (!textile.cloth) continue;
+    const YarnNetwork& network = textile.fabric->network;
+    EmbeddingScratch scratch;
+    update_normals(scratch, textile.cloth->soft.sheet);
+    const ClothPlace place(*textile.cloth->embedding, textile.cloth->soft.sheet, scratch);
+    const Real neck = hem_neck(world.liquid.kind.surface_tension, world.liquid.kind.density, g);
+    Hem hem;
+    find_hem(network, place, world.gravity, neck, hem);
+    add(drops_at_hem(network, place, hem, neck, textile.exchange));
+  }
+  for (const CellCloth& cloth : world.cell_cloths) add(hanging_drops(cloth));
+  return places;
 }
 
 }  // namespace imbibe

@@ -60,4 +60,8 @@ std::vector<Real> node_saturations(const Textile& textile, const Air& air);
 std::vector<Vec3> points_in_world(const Textile& textile);
 std::vector<Vec3> nodes_in_world(const Textile& textile);
 
+// Where the liquid that hangs in drops at hems and under leaks is, as the particles that it will be: it belongs to its cloth
+// and is no part of the free liquid. For pictures and files.
+std::vector<Vec3> hanging_liquid(const World& world);
+
 }  // namespace imbibe

@@ -230,7 +230,7 @@ Real hem_neck_of(const World& world) {
   return hem_neck(kind.surface_tension, kind.density, norm(world.gravity));
 }
 
-// Liquid that has run down to a hem (scratch.at_hem) joins the drop that hangs there.
+// Liquid that has run down to a hem (scratch.hem) joins the drop that hangs there.
 std::size_t stop_at_hem(World& world, std::size_t index, StepScratch& scratch) {
   if (world.liquid.particles.size() == 0) return 0;
   Textile& textile = world.textiles[index];
@@ -239,7 +239,7 @@ std::size_t stop_at_hem(World& world, std::size_t index, StepScratch& scratch) {
   const Real neck = hem_neck_of(world);
   scratch.dead.assign(world.liquid.particles.size(), 0);
   const CaughtAtHem caught =
-      catch_at_hem(network, place, scratch.at_hem, world.gravity, neck, textile.cloth->soft, sheet_of(world, index, scratch).held,
+      catch_at_hem(network, place, scratch.hem, world.gravity, neck, textile.cloth->soft, sheet_of(world, index, scratch).held,
                    textile.exchange, world.liquid, scratch.dead);
   // A particle may owe to two cloths that it touches: this one is given no more than it lent (its weight, not the books).
   textile.cloth->borrowed_kg = std::max(0.0, textile.cloth->borrowed_kg - caught.owed_kg);
@@ -254,23 +254,22 @@ ReleaseReport release_from_cloth(World& world, std::size_t index, std::span<cons
   const YarnNetwork& network = textile.fabric->network;
   const ClothPlace place = place_of(world, index, scratch);
   const Real neck = hem_neck_of(world);
-  const std::vector<std::uint8_t>& at_hem = scratch.at_hem;
+  const Hem& hem = scratch.hem;
   std::vector<Real>& waiting = textile.exchange.waiting_kg;
   std::vector<Real>& hem_kg = scratch.hem_kg;
   hem_kg.assign(waiting.size(), 0);
-  for (std::size_t k = 0; k < waiting.size(); ++k)
-    if (at_hem[k]) std::swap(hem_kg[k], waiting[k]);
-  std::vector<ReleasedLiquid> elsewhere;
+  for (const Index k : hem.nodes) std::swap(hem_kg[k], waiting[k]);
+  std::vector<ReleasedLiquid>& elsewhere = scratch.released_elsewhere;
+  elsewhere.clear();
   for (const ReleasedLiquid& r : released) {
-    if (at_hem[r.node]) hem_kg[r.node] += r.kg;
+    if (hem.holds[r.node]) hem_kg[r.node] += r.kg;
     else elsewhere.push_back(r);
   }
   ReleaseReport report = release_particles(network, place, *textile.faces, elsewhere, world.gravity, taken,
                                            textile.exchange, world.liquid);
-  for (std::size_t k = 0; k < waiting.size(); ++k)
-    if (at_hem[k]) waiting[k] += hem_kg[k];
+  for (const Index k : hem.nodes) waiting[k] += hem_kg[k];
   const ReleaseReport drops =
-      release_hem_drops(network, place, at_hem, world.gravity, neck, taken, textile.exchange, world.liquid);
+      release_hem_drops(network, place, hem, world.gravity, neck, taken, textile.exchange, world.liquid);
   report.particles += drops.particles, report.kg += drops.kg, report.momentum += drops.momentum;
   report.places.insert(report.places.end(), drops.places.begin(), drops.places.end());
   return report;
@@ -327,7 +326,7 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   const YarnNetwork& network = textile.fabric->network;
   const ClothPlace place = place_of(world, index, scratch);
   if (textile.cloth) {
-    find_hem(network, place, world.gravity, hem_neck_of(world), scratch.at_hem);
+    find_hem(network, place, world.gravity, hem_neck_of(world), scratch.hem);
     report.absorbed += stop_at_hem(world, index, scratch);
   }
   Footprint& footprint = scratch.footprint;
@@ -355,7 +354,8 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   if (textile.cloth) {
     const SoftSheetScratch& sheet = sheet_of(world, index, scratch);
     const MassLeft left = leave_cloth(world.liquid, released, place, sheet, textile.cloth->soft);
-    weigh(*textile.cloth, sheet.held, network, *textile.model, textile.contents, textile.exchange, left);
+    weigh(*textile.cloth, sheet.held, network, *textile.model, textile.contents, textile.exchange, left,
+          scratch.textiles[index].weigh);
   }
   show_on_walls(world, index, scratch);
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "imbibe/coupling/footprint.h"
+#include "imbibe/coupling/hem_drops.h"
 #include "imbibe/sim/world.h"
 
 namespace imbibe {
@@ -43,6 +44,7 @@ struct StepReport {
 struct TextileScratch {
   std::shared_ptr<const WettingModel> model;
   WettingScratch wetting;
+  WeighScratch weigh;
 };
 
 // Work space kept between steps so that nothing is allocated; not state: results do not depend on it.
@@ -56,8 +58,9 @@ struct StepScratch {
   std::vector<FaceSupply> supplies;  // of footprint and reservoirs
   std::vector<Real> taken_kg;
   std::vector<std::uint8_t> dead;
-  std::vector<std::uint8_t> at_hem;            // of the textile that exchanges: nodes whose liquid hangs at a hem
+  Hem hem;                                     // of the textile that exchanges
   std::vector<Real> hem_kg;
+  std::vector<ReleasedLiquid> released_elsewhere;
   std::vector<ParticleHit> hits;
   ContactScratch contact;
   std::vector<SoftSheetScratch> sheets_in_motion;  // of the cell cloths, then of the textiles (empty for fixed ones)

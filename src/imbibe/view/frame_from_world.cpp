@@ -65,6 +65,7 @@ Frame frame_from_world(const World& world, const std::string& title) {
   frame.particle_spacing = world.liquid.spacing();
   frame.particles.reserve(world.liquid.particles.size());
   for (const Float4& p : world.liquid.particles.position) frame.particles.push_back({p.x, p.y, p.z});
+  for (const Vec3& p : hanging_liquid(world)) frame.particles.emplace_back(p);
   for (const SolidBody& solid : world.solids) frame.solids.push_back({solid.shape, {}, solid.colour});
   return frame;
 }

@@ -38,7 +38,7 @@ struct CellParams {
   std::optional<Real> capacity;       // kg/m2, in place of the ratio
   Real residual_saturation = 0.05;    // 1
   Real leak_time = 0.1;               // s, tau
-  Real drop_neck = 2e-3;              // m, hem_drop.h
+  Real drop_neck = 2e-3;              // m, coupling/hem_drops.h
   bool drying = true;
   Real critical_saturation = 0.3;     // 1, s_c
   Real restitution = 0.3;             // 1, of a bounce
