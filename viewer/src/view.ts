@@ -80,7 +80,8 @@ export class View {
       : direction === 'keep' ? this.camera.position.clone().sub(this.orbit.target).normalize() : new THREE.Vector3(0.32, -0.92, 0.78);
     from.normalize();
     const area = this.area(0);
-    const half = Math.tan((this.camera.fov * Math.PI) / 360), wide = 0.94 * half * (area.z / Math.max(1, area.w)), high = 0.8 * half;
+    const bar = this.swatches().length > 1 ? 0 : this.margin;  // one view lies under the colour bar: what it shows keeps off
+    const half = Math.tan((this.camera.fov * Math.PI) / 360), wide = 0.94 * half * ((area.z - bar) / Math.max(1, area.w)), high = 0.8 * half;
     const right = new THREE.Vector3().crossVectors(this.camera.up, from).normalize(), up = new THREE.Vector3().crossVectors(from, right);
     const corners: THREE.Vector3[] = [];
     for (const { min, max } of this.boxes())
@@ -104,6 +105,9 @@ export class View {
         centre.addScaledVector(axis, 0.5 * (low + top) * distance);
       }
     }
+    const millimetre = area.w / (2 * distance * half);  // pixels
+    const reach = Math.max(...corners.map((corner) => { const c = corner.clone().sub(centre); return (c.dot(right) * distance) / (distance - c.dot(from)); }));
+    centre.addScaledVector(right, Math.min(0.5 * bar, Math.max(0, reach * millimetre - (0.5 * area.z - bar))) / millimetre);
     this.orbit.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(from, distance);
     this.camera.near = distance / 200;
