@@ -62,7 +62,7 @@ TEST(Viscosity, conserves_linear_and_angular_momentum) {
     Block b = block(12, 0.4, random_velocity);
     const Momenta before = momenta(b.f);
     std::vector<Vec3> impulse;
-    const ViscosityReport report = apply_viscosity(b.f, {}, 1e-3, dt, impulse);
+    const ViscosityReport report = apply_viscosity(b.f, {}, 1e-3, dt, {}, impulse);
     EXPECT_EQ(report.iterations > 0, dt > 1) << dt;
     EXPECT_TRUE(report.converged);
     const Momenta after = momenta(b.f);
@@ -78,7 +78,7 @@ TEST(Viscosity, damps_a_shear_wave_at_the_rate_nu_k_squared) {
   const auto wave = [&](const Vec3& x) { return Vec3{std::sin(k * x.z), 0, 0}; };
   Block b = block(15, 0.2, wave);
   std::vector<Vec3> impulse;
-  apply_viscosity(b.f, {}, nu * b.liquid.kind.density, dt, impulse);
+  apply_viscosity(b.f, {}, nu * b.liquid.kind.density, dt, {}, impulse);
   Real lost = 0, there = 0;
   for (std::size_t i = 0; i < b.f.count; ++i) {
     const Vec3 x{b.f.position[i].x, b.f.position[i].y, b.f.position[i].z};
@@ -97,8 +97,8 @@ TEST(Viscosity, the_implicit_form_goes_over_into_the_explicit_one_for_short_step
   const Real dt = 1e-2;
   Block a = block(10, 0.3, random_velocity), b = block(10, 0.3, random_velocity);
   std::vector<Vec3> impulse;
-  ASSERT_EQ(apply_viscosity(a.f, {}, 1e-3, dt, impulse).iterations, 0);
-  ASSERT_GT(apply_viscosity(b.f, {.explicit_limit = 0, .tolerance = 1e-7}, 1e-3, dt, impulse).iterations, 0);
+  ASSERT_EQ(apply_viscosity(a.f, {}, 1e-3, dt, {}, impulse).iterations, 0);
+  ASSERT_GT(apply_viscosity(b.f, {.explicit_limit = 0, .tolerance = 1e-7}, 1e-3, dt, {}, impulse).iterations, 0);
   Real change = 0, difference = 0;
   for (std::size_t i = 0; i < a.f.count; ++i) {
     change += std::pow(a.f.velocity[i].x - a.liquid.particles.velocity[i].x, 2);
@@ -113,7 +113,7 @@ TEST(Viscosity, a_long_implicit_step_stops_all_motion_relative_to_the_mean) {
   Block b = block(8, 0.3, random_velocity);
   const Vec3 mean = momenta(b.f).linear / 1024.0;
   std::vector<Vec3> impulse;
-  const ViscosityReport report = apply_viscosity(b.f, {.tolerance = 1e-6, .max_iterations = 2000}, 10.0, 100.0, impulse);
+  const ViscosityReport report = apply_viscosity(b.f, {.tolerance = 1e-6, .max_iterations = 2000}, 10.0, 100.0, {}, impulse);
   EXPECT_TRUE(report.converged);
   // Rigid motion is all that remains: compare with the rigid rotation's share by its energy, far below the start's.
   Real energy = 0, start = 0;
@@ -132,7 +132,7 @@ TEST(Viscosity, linear_shear_over_a_wall_is_in_balance_and_pulls_the_wall_with_e
   const int n = 15;
   Block b = block(n, 0, [&](const Vec3& x) { return Vec3{shear * x.z, 0, 0}; }, {&wall, 1});
   std::vector<Vec3> impulse(1);
-  apply_viscosity(b.f, {}, eta, dt, impulse);
+  apply_viscosity(b.f, {}, eta, dt, {}, impulse);
   // Stress on the wall over the block's face; friction is applied over the step to slowing particles: a few per cent.
   const Real area = n * n * edge * edge;
   EXPECT_NEAR(impulse[0].x / dt / area, eta * shear, 0.15 * eta * shear);
@@ -160,8 +160,8 @@ TEST(Viscosity, only_the_speed_relative_to_a_running_wall_matters_explicit_and_i
     Block a = block(8, 0.1, [](const Vec3&) { return Vec3{}; }, {&running, 1});
     Block b = block(8, 0.1, [&](const Vec3&) { return Vec3{-speed, 0, 0}; }, {&resting, 1});
     std::vector<Vec3> on_running(1), on_resting(1);
-    apply_viscosity(a.f, {}, eta, dt, on_running);
-    apply_viscosity(b.f, {}, eta, dt, on_resting);
+    apply_viscosity(a.f, {}, eta, dt, {}, on_running);
+    apply_viscosity(b.f, {}, eta, dt, {}, on_resting);
     Real moved = 0;
     for (std::size_t i = 0; i < a.f.count; ++i) {
       EXPECT_NEAR(a.f.velocity[i].x - speed, b.f.velocity[i].x, all * speed);
@@ -180,7 +180,7 @@ TEST(Viscosity, has_the_same_bits_for_any_number_of_threads) {
     const ThreadLimit limit(threads);
     Block b = block(14, 0.4, random_velocity);
     std::vector<Vec3> impulse;
-    apply_viscosity(b.f, {}, 1e-3, 5.0, impulse);
+    apply_viscosity(b.f, {}, 1e-3, 5.0, {}, impulse);
     results.push_back(b.f.velocity);
   }
   for (std::size_t i = 0; i < results[0].size(); ++i) {

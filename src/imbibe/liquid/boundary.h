@@ -71,6 +71,7 @@ struct Boundary {
   Vec3f wall_velocity(std::size_t i, const WallSample& s) const {
     return s.foot == no_index ? s.velocity : tiles[i / default_tile_size].feet[s.foot].velocity;
   }
+  const SheetFoot& foot(std::size_t i, const WallSample& s) const { return tiles[i / default_tile_size].feet[s.foot]; }
   void give(std::size_t i, const WallSample& s, const Vec3& impulse) {
     if (s.foot != no_index) tiles[i / default_tile_size].feet[s.foot].impulse += impulse;
   }

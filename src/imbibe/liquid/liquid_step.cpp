@@ -201,7 +201,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
     viscosity = std::max(viscosity, kind.density * least_viscosity(params.surface, kind.surface_tension, kind.density,
                                                                    liquid.spacing()));
   }
-  const ViscosityReport viscous = apply_viscosity(f, params.viscosity, viscosity, dt, report.wall_impulse);
+  const ViscosityReport viscous = apply_viscosity(f, params.viscosity, viscosity, dt, walls, report.wall_impulse);
   report.viscosity_iterations = viscous.iterations;
   if (tension) damp_small_scales(f, static_cast<float>(std::min(0.5, params.surface.damping * dt / capillary_time)));
   report.times.viscosity = timer.lap();

@@ -28,6 +28,7 @@ struct SheetWall {
   std::span<const Real> inverse_mass{};     // 1/kg per node; 0: held
   Real half_thickness = 0;                  // m
   std::vector<Vec3> impulse{};              // N s per node, given by the liquid in this step; added to
+  std::vector<float> dragging{};            // kg per node, of liquid that sticks to it (viscosity.cpp)
   Real pressing = 0;                        // N s, by the pressure alone, along the normals into the sheet; added to
 };
 

@@ -1,5 +1,9 @@
 #include "imbibe/liquid/viscosity.h"
 
+#include <algorithm>
+
+#include "imbibe/liquid/sheet_wall.h"
+
 namespace imbibe {
 
 namespace {
@@ -31,10 +35,11 @@ void liquid_part(const LiquidFields& f, const std::vector<Float4>& u, float visc
   });
 }
 
-// -nu shear (u - w)_t of all walls near a particle; of a difference of velocities, w (the walls' own) drops out.
+// -nu shear (u - w)_t of all walls near a particle but soft sheets; of a difference of velocities, w (the walls' own) drops out.
 Vec3f wall_part(const LiquidFields& f, std::size_t i, const Float4& u, float viscosity, bool difference) {
   Vec3f sum{};
   for (const WallSample& s : f.boundary.samples(i)) {
+    if (s.foot != no_index) continue;
     Vec3f v{u.x, u.y, u.z};
     if (!difference) v -= f.boundary.wall_velocity(i, s);
     sum -= viscosity * s.shear * (v - dot(v, s.normal) * s.normal);
@@ -99,10 +104,36 @@ ViscosityReport solve_implicit(LiquidFields& f, const ViscosityParams& params, f
   return report;
 }
 
+// Share of a particle's slip that friction takes on a wall: implicit, because close to the wall the rate may be above 1/dt.
+float taken(float rate) { return rate / (1 + rate); }
+
+// Mass that drags each node of the soft sheets: R = sum over the feet on it of b m taken.
+void find_drag(const LiquidFields& f, std::span<const Wall> walls, float rate) {
+  bool any = false;
+  for (const Wall& wall : walls)
+    if (wall.sheet != nullptr) wall.sheet->dragging.assign(wall.sheet->inverse_mass.size(), 0), any = true;
+  if (!any) return;
+  for (std::size_t i = 0; i < f.count; ++i)
+    for (const WallSample& s : f.boundary.samples(i)) {
+      if (s.foot == no_index) continue;
+      const SheetFoot& foot = f.boundary.foot(i, s);
+      for (std::size_t c = 0; c < 3; ++c)
+        walls[s.wall].sheet->dragging[foot.node[c]] += foot.weight[c] * f.particle_mass * taken(rate * s.shear);
+    }
+}
+
+// How much of the friction a soft sheet can give: nodes lighter than the liquid that drags them would overshoot its velocity
+// and swing ever more. 1/(1 + R/m_n) stops short of the common velocity.
+float share_of_sheet(const SheetWall& sheet, const SheetFoot& foot) {
+  float most = 0;
+  for (const Index n : foot.node) most = std::max(most, sheet.dragging[n] * static_cast<float>(sheet.inverse_mass[n]));
+  return 1 / (1 + most);
+}
+
 }  // namespace
 
 ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, Real viscosity, Real dt,
-                                std::vector<Vec3>& impulse) {
+                                std::span<const Wall> walls, std::vector<Vec3>& impulse) {
   ViscosityReport report;
   if (!params.on || viscosity <= 0 || f.count == 0) return report;
   const auto nu = static_cast<float>(viscosity / static_cast<Real>(f.rest_density));
@@ -119,15 +150,20 @@ ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, 
     });
   }
   if (!params.wall_friction) return report;
-  // Friction: in the implicit form already in the velocity, here only booked; else applied, implicitly per particle
-  // because a particle close to the wall may have a rate above 1/dt.
+  // Friction: of the implicit form already in the velocity, here only booked; else, and on soft sheets, applied.
+  find_drag(f, walls, step * nu);
   for (std::size_t i = 0; i < f.count; ++i) {
+    const Float4 before = f.velocity[i];
     for (const WallSample& s : f.boundary.samples(i)) {
       Float4& u = f.velocity[i];
-      const Vec3f v = Vec3f{u.x, u.y, u.z} - f.boundary.wall_velocity(i, s), tangential = v - dot(v, s.normal) * s.normal;
+      const bool solved = implicit && s.foot == no_index;
+      const Vec3f now = solved ? Vec3f{before.x, before.y, before.z} : Vec3f{u.x, u.y, u.z};
+      const Vec3f v = now - f.boundary.wall_velocity(i, s), tangential = v - dot(v, s.normal) * s.normal;
       const float rate = step * nu * s.shear;
-      const Vec3f lost = implicit ? rate * tangential : (rate / (1 + rate)) * tangential;
-      if (!implicit) u = {u.x - lost.x, u.y - lost.y, u.z - lost.z, u.w};
+      float part = solved ? rate : taken(rate);
+      if (s.foot != no_index) part *= share_of_sheet(*walls[s.wall].sheet, f.boundary.foot(i, s));
+      const Vec3f lost = part * tangential;
+      if (!solved) u = {u.x - lost.x, u.y - lost.y, u.z - lost.z, u.w};
       impulse[s.wall] += static_cast<Real>(f.particle_mass) * Vec3(lost);
       f.boundary.give(i, s, static_cast<Real>(f.particle_mass) * Vec3(lost));
     }

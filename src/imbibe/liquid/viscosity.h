@@ -16,6 +16,7 @@
 
 #include "imbibe/core/parameter.h"
 #include "imbibe/liquid/fields.h"
+#include "imbibe/liquid/wall.h"
 
 namespace imbibe {
 
@@ -48,8 +49,9 @@ T viscous_pair_rate(T viscosity_over_density, T volume, T slope) {
   return -10 * viscosity_over_density * volume * slope;
 }
 
-// Changes f.velocity by viscosity over dt; impulse[wall] gets what friction gave to each wall, N s.
+// Changes f.velocity by viscosity over dt; impulse[wall] gets what friction gave to each wall, N s. Soft sheets are dragged
+// explicitly, by no more than brings them to the liquid's velocity.
 ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, Real viscosity, Real dt,
-                                std::vector<Vec3>& impulse);
+                                std::span<const Wall> walls, std::vector<Vec3>& impulse);
 
 }  // namespace imbibe
