@@ -207,7 +207,7 @@ void Server::send_frames(Connection& c) {
   }
   if (!sent) return;
   const auto interval = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(c.frame_interval));
-  c.frame_due = std::max(c.frame_due + interval, Clock::now());  // the rate is kept although frames come unevenly
+  c.frame_due = std::max(c.frame_due + interval, Clock::now() - interval);  // the rate is kept although frames come unevenly
 }
 
 void Server::take_messages(Connection& c) {

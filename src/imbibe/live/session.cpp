@@ -172,9 +172,10 @@ void Session::publish() {
   }
   last_ = std::move(snapshot);
   outlet.publish(last_);
-  // Steps end when they end: due times that follow each other, not the last snapshot, keep the rate.
+  // Steps end when they end: due times that follow each other, not the last snapshot, keep the rate. After a step longer
+  // than a frame the next comes sooner.
   const auto every = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<Real>(setup_.snapshot_every));
-  publish_due_ = std::max(publish_due_ + every, Clock::now());
+  publish_due_ = std::max(publish_due_ + every, Clock::now() - every);
   told_ = true;
 }
 
