@@ -19,7 +19,6 @@ await page.evaluate((quality) => {
   view.hold = true;
   choice.value = quality;
   choice.onchange({ target: choice });
-  view.zoom(0.86);
 }, process.env.IMBIBE_FILM_QUALITY ?? 'fine');
 await page.fill('#filter', 'contact angle');
 
