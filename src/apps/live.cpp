@@ -59,7 +59,7 @@ bool is_run_folder(const fs::path& path) { return fs::is_directory(path) && fs::
 int go(const LiveArguments& arguments, const CommandContext& context) {
   auto page = live::read_page(context.data_folders);
   if (page.empty())
-    throw InputError("the page of `imbibe live` is not built: run ./imbibe live, or in viewer/: npm ci && npm run build "
+    throw InputError("the page of `imbibe live` is not built: run ./imbibe live, or in viewer/: npm install && npm run build "
                      "(needs nodejs and npm)");
   live::Server* looking = nullptr;  // set before the first feed makes its first event
   const auto wake = [&looking] {

@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url)), viewer = dirname(here);
 const missing = [];
-if (!existsSync(join(viewer, 'dist', 'index.html'))) missing.push('the built page (npm ci && npm run build in viewer/)');
+if (!existsSync(join(viewer, 'dist', 'index.html'))) missing.push('the built page (npm install && npm run build in viewer/)');
 if (!existsSync(join(viewer, 'node_modules', 'playwright-core'))) missing.push('playwright-core (npm ci in viewer/)');
 if (!['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].some(existsSync)) missing.push('chromium');
 if (missing.length > 0) {
