@@ -310,8 +310,9 @@ class RunSession {
                 static_cast<unsigned long long>(moved_), wetting_s_, static_cast<unsigned long long>(wetted_), waited_s_);
     std::printf("  beside it   files and pictures %.1f s\n", writer_.working_s());
     if (moved_ > 0)
-      std::printf("  liquid      density error %.2g %% (mean), %.2g %% in the worst step; of one particle up to %.2g %%\n",
-                  100 * world_.density.mean(), 100 * world_.density.worst_mean, 100 * world_.density.worst_particle);
+      std::printf("  liquid      density error %.2g %% (mean), %.2g %% in the worst step, of it compression %.2g %%; of one particle up to %.2g %%\n",
+                  100 * world_.density.mean(), 100 * world_.density.worst_mean, 100 * world_.density.mean_compression(),
+                  100 * world_.density.worst_particle);
     if (contact_.textile_boxes > 0)
       std::printf("  contact     boxes tested: %llu of textiles, %llu of yarns, %llu of segments; %llu pieces, %llu triangles\n",
                   static_cast<unsigned long long>(contact_.textile_boxes),

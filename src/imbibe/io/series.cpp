@@ -99,6 +99,8 @@ void visit_columns(const Row& r, Column&& column) {
   column("mean_density_error", r.density.mean());
   column("worst_density_error", r.density.worst_mean);
   column("worst_compression", r.density.worst_particle);
+  column("mean_compression", r.density.mean_compression());
+  column("worst_mean_compression", r.density.worst_mean_compression);
   column("contacts", r.contacts);
   column("absorbed_particles", r.absorbed_particles);
   column("released_particles", r.released_particles);

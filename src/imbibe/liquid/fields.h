@@ -37,6 +37,9 @@ struct LiquidFields {
   std::vector<float> applied;         // work space of solvers
   std::vector<float> pressure;        // Pa, of the projection
   std::vector<float> wall_push;       // acceleration by the walls' pressure is -wall_push_i P_i; m2/s2
+  bool corrected = false;             // the pressure's operator uses L
+  std::vector<Float4> correction;     // three rows a particle: L of gradient_correction.h
+  std::vector<Float4> stress;         // three rows a particle: k L, and x, y, z in the rows' w; work space of pressure.cpp
   std::vector<float> sheet_rate;      // 2 w.P by the soft sheets' motion, 1/s; only with such sheets
   std::vector<SheetFoot*> feet;       // on soft sheets, by rising particle
   std::vector<std::uint8_t> surface;  // set by the class stage: 1 = free surface (pressure is prescribed there)

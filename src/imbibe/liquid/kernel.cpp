@@ -41,6 +41,21 @@ Real lattice_excess(Real support_in_spacings) {
   return 21 / (2 * pi * h * h * h) * sum - 1;
 }
 
+Real lattice_stress(Real support_in_spacings) {
+  const Real edge = portable::cbrt(2.0), h = support_in_spacings;
+  const Kernel kernel(h);
+  const int reach = 2 * (static_cast<int>(std::ceil(h / edge)) + 1);
+  Real sum = 0;
+  for (int z = -reach; z <= reach; ++z)
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = -reach; x <= reach; ++x) {
+        if ((x - y) % 2 != 0 || (x - z) % 2 != 0) continue;
+        const Real square = 0.25 * edge * edge * static_cast<Real>(x * x + y * y + z * z);
+        sum -= static_cast<Real>(kernel.slope(static_cast<float>(std::sqrt(square)))) * square / 3;
+      }
+  return sum;
+}
+
 SolidIntegral half_space_integral(Real distance, Real support) {
   const PlaneIntegrals p = plane_integrals(std::abs(distance), support);
   return {distance >= 0 ? p.lambda : 1 - p.lambda, -p.slope};

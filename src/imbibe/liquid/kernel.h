@@ -58,6 +58,10 @@ inline Kernel kernel_for(Real spacing) { return Kernel(support_over_spacing * sp
 // particle's own term). 0.8 % at H = 2.5 dx, 0.4 % at 3 dx; left in, the liquid would swell by as much.
 Real lattice_excess(Real support_in_spacings = support_over_spacing);
 
+// The second moment -V sum W'(r) r/3 of that lattice, 0.984 at H = 2.5 dx and 1 in the continuum: the stress that its pairs
+// carry at k = 1, over rho0 (pressure.h).
+Real lattice_stress(Real support_in_spacings = support_over_spacing);
+
 // Integral of W over a solid at distance d, and its derivative along the outward normal (<= 0).
 struct SolidIntegral {
   Real lambda = 0;  // 1

@@ -1,10 +1,12 @@
 #include "imbibe/liquid/liquid_step.h"
 
 #include <chrono>
+#include <utility>
 
 #include "imbibe/core/error.h"
 #include "imbibe/liquid/damping.h"
 #include "imbibe/liquid/density.h"
+#include "imbibe/liquid/gradient_correction.h"
 #include "imbibe/liquid/momentum.h"
 
 namespace imbibe {
@@ -66,13 +68,16 @@ void kick(LiquidFields& f, const Vec3& gravity, Real dt) {
 }
 
 // The displacement that would undo the density errors, as a velocity over dt in f.shift: the same projection as for the
-// velocity, for liquid at rest. It moves particles but is not part of their velocity, so it gives them no energy.
+// velocity, for liquid at rest. It moves particles but is not part of their velocity, so it gives them no energy. Plain
+// gradients: what counts here is by how much the kernel sum changes.
 PressureReport find_shift(LiquidFields& f, const LiquidParams& params, Real dt, std::vector<float>& warm) {
   f.shift.swap(f.velocity);
   f.velocity.assign(f.shift.size(), Float4{});
   PressureParams goal = params.pressure;
   goal.tolerance = params.max_density_error;
+  const bool corrected = std::exchange(f.corrected, false);
   const PressureReport report = project_velocity(f, goal, dt, params.position_correction, warm);
+  f.corrected = corrected;
   f.shift.swap(f.velocity);
   return report;
 }
@@ -194,12 +199,13 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   build_lists(f.neighbours, f.position, f.boundary.side);
   report.times.lists = timer.lap();
   compute_density(f);
+  correct_gradients(f);
   report.times.density = timer.lap();
 
-  Real viscosity = kind.viscosity;
+  ViscosityAt viscosity{kind.viscosity, kind.viscosity};
   if (tension) {
-    viscosity = std::max(viscosity, kind.density * least_viscosity(params.surface, kind.surface_tension, kind.density,
-                                                                   liquid.spacing()));
+    viscosity.walls =
+        kind.density * least_viscosity(params.surface, kind.surface_tension, kind.density, liquid.spacing());
   }
   const ViscosityReport viscous = apply_viscosity(f, params.viscosity, viscosity, dt, walls, report.wall_impulse);
   report.viscosity_iterations = viscous.iterations;
@@ -231,6 +237,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   add_wall_impulse(f.boundary, f.wall_push, liquid.particle_mass * dt, report.wall_pressure_impulse);
   report.pressure_iterations = pressure.iterations;
   report.density_error = pressure.density_error;
+  report.compression = pressure.compression;
   report.peak_density_error = pressure.peak_density_error;
   report.divergence_error = pressure.residual;
   report.converged = pressure.converged && viscous.converged;

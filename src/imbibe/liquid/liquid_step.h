@@ -3,7 +3,8 @@
 //   neighbours.h       sort_particles, build_lists
 //   boundary.h         sample_walls
 //   density.h          compute_density         colour, filling, their gradient, density error
-//   viscosity.h        apply_viscosity         with the numerical viscosity that surface tension asks for
+//   gradient_correction.h  correct_gradients   of the pressure's operator, for the disorder of the particles
+//   viscosity.h        apply_viscosity         with the numerical viscosity that contact lines ask for
 //   damping.h          damp_small_scales       (with surface tension)
 //   surface_tension.h  compute_surface         force of the surface and of the contact line, particle classes
 //   (kick)             velocity += dt (gravity + force)
@@ -35,7 +36,7 @@ struct LiquidParams {
   Real capillary_factor = 0.5;       // step <= factor sqrt(rho dx^3/(2 pi gamma))
   Real support = support_over_spacing;  // H/dx; 2 has 32 neighbours at half the cost, too few for surface tension
   Real position_correction = 0.5;     // part of the density error undone per step by moving particles; 0: by velocity
-  Real max_density_error = 1e-3;     // mean relative error that this correction may leave
+  Real max_density_error = 3e-4;     // mean relative error that this correction may leave of the part
   bool surface_tension = true;
   ViscosityParams viscosity;
   SurfaceParams surface;
@@ -69,6 +70,7 @@ struct LiquidStepReport {
   int divergence_iterations = 0;  // of the position correction
   int viscosity_iterations = 0;   // 0: explicit
   Real density_error = 0;         // mean |relative density error| at the start of the step
+  Real compression = 0;           // mean of what the kernel sum has above 1 there, the usual measure of such solvers
   Real peak_density_error = 0;    // largest compression of one particle there
   Real remaining_density_error = 0;  // mean that the position correction left, predicted
   Real divergence_error = 0;      // mean relative compression per step that the projection left

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imbibe/core/portable.h"
-
 namespace imbibe {
 
 using simd::Floats;
@@ -14,25 +12,83 @@ using simd::lanes;
 
 namespace {
 
-// The stress that the pairs of a body-centred lattice of the rest density carry at k = 1, over rho0: its second moment
-// V sum |W'| r/3, 0.984 at H = 2.5 dx and 1 in the continuum. k bears the load, so it is as much larger than p/rho0.
-float lattice_stress(Real support_in_spacings) {
-  const Real edge = portable::cbrt(2.0), h = support_in_spacings;
-  const Kernel kernel(h);
-  const int reach = 2 * (static_cast<int>(std::ceil(h / edge)) + 1);
-  Real sum = 0;
-  for (int z = -reach; z <= reach; ++z)
-    for (int y = -reach; y <= reach; ++y)
-      for (int x = -reach; x <= reach; ++x) {
-        if ((x - y) % 2 != 0 || (x - z) % 2 != 0) continue;
-        const Real square = 0.25 * edge * edge * static_cast<Real>(x * x + y * y + z * z);
-        sum -= static_cast<Real>(kernel.slope(static_cast<float>(std::sqrt(square)))) * square / 3;
-      }
-  return static_cast<float>(sum);
+// Eight matrices, as rows of three, each row with a number beside it.
+struct Rows {
+  Floats4 row[3];
+  Floats3 times(const Floats3& v) const {
+    return {simd::dot(row[0].xyz(), v), simd::dot(row[1].xyz(), v), simd::dot(row[2].xyz(), v)};
+  }
+};
+
+// Those of eight neighbours, by index; three records a particle.
+Rows load_rows(const Float4* base, const Index* id) {
+  Index at[lanes];
+  Rows r;
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < lanes; ++l) at[l] = 3 * id[l] + static_cast<Index>(k);
+    r.row[k] = simd::load4(base, at);
+  }
+  return r;
 }
 
-// f.acceleration = a(k), k in position.w.
-void pressure_acceleration(LiquidFields& f) {
+// Those of eight consecutive particles.
+Rows load_rows(const Float4* own) {
+  constexpr Index here[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+  return load_rows(own, here);
+}
+
+// a(k) with L: each particle's own part is k L n, that of its neighbours goes by their k L.
+void corrected_acceleration(LiquidFields& f) {
+  const float volume = f.volume;
+  parallel_for(f.count, [&](std::size_t i) {
+    const float k = f.position[i].w;
+    const float x[3] = {f.position[i].x, f.position[i].y, f.position[i].z};
+    for (std::size_t r = 0; r < 3; ++r) {
+      const Float4& l = f.correction[3 * i + r];
+      f.stress[3 * i + r] = {k * l.x, k * l.y, k * l.z, x[r]};
+    }
+  });
+  for_each_slice(f.neighbours, [&](const Slice& s) {
+    const Floats4 here = simd::load4(&f.position[s.first]);
+    Floats3 sum{};
+    for (std::size_t k = 0; k < s.slots; ++k) {
+      const Rows there = load_rows(f.stress.data(), s.index + k * lanes);
+      const Floats c = simd::load(s.slope + k * lanes);
+      const Floats3 x{c * (here.x - there.row[0].w), c * (here.y - there.row[1].w), c * (here.z - there.row[2].w)};
+      const Floats3 t = there.times(x);
+      sum.x += t.x, sum.y += t.y, sum.z += t.z;
+    }
+    const Floats3 own = load_rows(&f.stress[3 * s.first]).times(simd::load4(&f.colour_gradient[s.first]).xyz());
+    const Floats4 wall = simd::load4(&f.boundary.push[s.first]);
+    const Floats twice = -2 * here.w;
+    const Floats3 a{twice * wall.x - volume * sum.x - own.x, twice * wall.y - volume * sum.y - own.y,
+                    twice * wall.z - volume * sum.z - own.z};
+    simd::store4(&f.acceleration[s.first], a, Floats{});
+  });
+}
+
+// D(u) with L of the eight particles of a slice: L contracted with the gradient of u.
+Floats corrected_rate(const LiquidFields& f, const std::vector<Float4>& u, const Slice& s) {
+  const Floats4 here = simd::load4(&f.position[s.first]), own = simd::load4(&u[s.first]);
+  Floats3 ex{}, ey{}, ez{};
+  for (std::size_t k = 0; k < s.slots; ++k) {
+    const Index* id = s.index + k * lanes;
+    const Floats4 there = simd::load4(f.position.data(), id), other = simd::load4(u.data(), id);
+    const Floats c = simd::load(s.slope + k * lanes);
+    const Floats3 v{c * (own.x - other.x), c * (own.y - other.y), c * (own.z - other.z)};
+    const Floats3 x = here.xyz() - there.xyz();
+    ex.x += v.x * x.x, ex.y += v.x * x.y, ex.z += v.x * x.z;
+    ey.x += v.y * x.x, ey.y += v.y * x.y, ey.z += v.y * x.z;
+    ez.x += v.z * x.x, ez.y += v.z * x.y, ez.z += v.z * x.z;
+  }
+  const Rows l = load_rows(&f.correction[3 * s.first]);
+  const Floats4 wall = simd::load4(&f.boundary.push[s.first]);
+  const Floats pairs = simd::dot(l.row[0].xyz(), ex) + simd::dot(l.row[1].xyz(), ey) + simd::dot(l.row[2].xyz(), ez);
+  return f.volume * pairs + 2 * simd::dot(own.xyz(), wall.xyz());
+}
+
+// The same with L = I.
+void plain_acceleration(LiquidFields& f) {
   const float volume = f.volume;
   for_each_slice(f.neighbours, [&](const Slice& s) {
     const Floats4 here = simd::load4(&f.position[s.first]);
@@ -49,8 +105,7 @@ void pressure_acceleration(LiquidFields& f) {
   });
 }
 
-// D(u) of the eight particles of a slice.
-Floats compression_rate(const LiquidFields& f, const std::vector<Float4>& u, const Slice& s) {
+Floats plain_rate(const LiquidFields& f, const std::vector<Float4>& u, const Slice& s) {
   const Floats4 here = simd::load4(&f.position[s.first]), own = simd::load4(&u[s.first]);
   Floats sum{};
   for (std::size_t k = 0; k < s.slots; ++k) {
@@ -60,6 +115,17 @@ Floats compression_rate(const LiquidFields& f, const std::vector<Float4>& u, con
   }
   const Floats4 wall = simd::load4(&f.boundary.push[s.first]);
   return f.volume * sum + 2 * simd::dot(own.xyz(), wall.xyz());
+}
+
+// f.acceleration = a(k), k in position.w.
+void pressure_acceleration(LiquidFields& f) {
+  if (f.corrected) corrected_acceleration(f);
+  else plain_acceleration(f);
+}
+
+// D(u) of the eight particles of a slice.
+Floats compression_rate(const LiquidFields& f, const std::vector<Float4>& u, const Slice& s) {
+  return f.corrected ? corrected_rate(f, u, s) : plain_rate(f, u, s);
 }
 
 struct Sums {
@@ -143,12 +209,20 @@ double apply_operator(LiquidFields& f, SheetContacts* sheets) {
 }
 
 void report_density(const LiquidFields& f, PressureReport& report) {
-  const double sum = parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
-    double part = 0;
-    for (std::size_t i = begin; i < end; ++i) part += std::abs(f.density_error[i]);
+  struct Both {
+    double error = 0, compression = 0;
+    Both& operator+=(const Both& o) { return error += o.error, compression += o.compression, *this; }
+  };
+  const Both sum = parallel_sum(f.count, [&](std::size_t begin, std::size_t end) {
+    Both part;
+    for (std::size_t i = begin; i < end; ++i) {
+      part.error += std::abs(f.density_error[i]);
+      part.compression += std::max(0.0f, f.filling[i] - 1);
+    }
     return part;
   });
-  report.density_error = sum / static_cast<double>(f.count);
+  report.density_error = sum.error / static_cast<double>(f.count);
+  report.compression = sum.compression / static_cast<double>(f.count);
   report.peak_density_error = parallel_max(f.count, 0.0f, [&](std::size_t begin, std::size_t end) {
     float most = 0;
     for (std::size_t i = begin; i < end; ++i) most = std::max(most, f.density_error[i]);
@@ -201,7 +275,7 @@ PressureReport project_velocity(LiquidFields& f, const PressureParams& params, R
   if (sheets != nullptr) sheets->book(f.pressure, dt_s);
   report.residual = relative();
   report.converged = report.residual < params.tolerance;
-  const float stress = f.rest_density * lattice_stress(static_cast<Real>(f.neighbours.kernel.support) / static_cast<Real>(f.spacing));
+  const float stress = f.rest_density * static_cast<float>(lattice_stress(static_cast<Real>(f.neighbours.kernel.support) / static_cast<Real>(f.spacing)));
   parallel_for(f.count, [&](std::size_t i) {
     const float k = f.pressure[i];
     warm[i] = k;

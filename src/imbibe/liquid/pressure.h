@@ -4,6 +4,7 @@
 //   a(k)_i = -sum_j V (k_i + k_j) grad W_ij - 2 k_i P_i       pressure acceleration, m/s2
 //   find k:  D(u* + dt a(k)) = -(dt/tau) (1 - lambda) e/dt    e relative density error (density.h)
 //   p_i = 0.984 rho0 (1 - lambda_i) k_i     pressure, Pa; 0.984 at H = 2.5 dx: the pairs' second moment (lattice_stress)
+// For the velocity grad W_ij is L_i grad W_ij in D and (k_i L_i + k_j L_j) grad W_ij in a (gradient_correction.h).
 // Next to a wall (lambda, P: boundary.h) the pairs hold only the part 1 - lambda of the kernel, and with it of every
 // gradient ALONG the wall: without the weight 1/(1 - lambda) in k the pressure in a column between walls rose 4 % faster
 // than rho g at 20 spacings width, 9 % at 10. With it the sum over all layers at the wall is exact. P stands in for the
@@ -51,6 +52,7 @@ struct PressureReport {
   int iterations = 0;
   Real residual = 0;            // mean relative compression per step left
   Real density_error = 0;       // mean |e| before the step
+  Real compression = 0;         // mean of max(0, C + lambda - 1) there: what particles at a surface lack is no error
   Real peak_density_error = 0;  // largest e before the step
   bool converged = true;
 };

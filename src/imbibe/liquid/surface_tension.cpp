@@ -221,18 +221,28 @@ Vec3f curvature_slope(const Stage& t, std::size_t i) {
   return fit.first() * slopes.s11 + fit.second() * slopes.s12;
 }
 
+// L of particle i times x; x itself where the operator has none.
+Vec3f corrected(const LiquidFields& f, std::size_t i, const Vec3f& x) {
+  if (!f.corrected) return x;
+  const Float4* row = &f.correction[3 * i];
+  return {dot(xyz(row[0]), x), dot(xyz(row[1]), x), dot(xyz(row[2]), x)};
+}
+
 // What a uniform pressure does to particle i, per Pa and over V: half of the pressure operator's response to k = 1/(1 - lambda)
-// (pressure.h). Away from walls the colour gradient.
+// (pressure.h). Away from walls the colour gradient, but for the operator's corrections.
 Vec3f pressure_response(const Stage& t, std::size_t i) {
   const LiquidFields& f = t.f;
-  if (f.boundary.samples(i).empty()) return xyz(f.colour_gradient[i]);
+  if (!f.corrected && f.boundary.samples(i).empty()) return xyz(f.colour_gradient[i]);
   const auto open = [&](std::size_t j) { return 1 / std::max(1 - f.boundary.wall[j].w, 0.1f); };
-  const float own = open(i);
-  Vec3f sum = xyz(f.boundary.push[i]) * own;
-  each_neighbour(f, i, [](Index) { return true; }, [&](Index j, const Vec3f& x) {
-    sum += x * (0.5f * (own + open(j)) * f.volume * f.neighbours.kernel.slope(norm(x)));
-  });
-  return sum;
+  Vec3f sum{};
+  const std::size_t lane = i % simd::lanes;
+  const Slice s = f.neighbours.slice(i - lane);
+  for (std::size_t k = lane; k < s.slots * simd::lanes; k += simd::lanes) {
+    const Index j = s.index[k];
+    if (j >= f.count) break;  // padding ends every list
+    sum += corrected(f, j, xyz(f.position[i]) - xyz(f.position[j])) * (0.5f * open(j) * f.volume * s.slope[k]);
+  }
+  return sum + (xyz(f.boundary.push[i]) + corrected(f, i, xyz(f.colour_gradient[i])) * 0.5f) * open(i);
 }
 
 // Force on particle i; what the line gives to walls is added to impulse (of the tile).

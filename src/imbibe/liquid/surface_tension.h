@@ -6,7 +6,7 @@
 //   F_i = 2 gamma kappa_i V N_i - gamma d dx^2 grad_s kappa           [N]
 //   gamma surface tension [N/m], beta wetness of wall k (contact_angle.h), n^ = n/|n|, d = offset dx
 //   N_i  what a uniform pressure does to particle i: the pressure operator's own response (pressure.h) to p = 1,
-//        n^f_i away from walls; next to them (1/2) sum_j V (w_i + w_j) grad W_ij + w_i P_i, w = 1/(1 - lambda)
+//        (1/2) sum_j V (w_i L_i + w_j L_j) grad W_ij + w_i P_i, w = 1/(1 - lambda), L of gradient_correction.h
 // The force is that of the pressure p_s = gamma kappa prescribed at the surface (Young-Laplace): a drop of uniform curvature
 // is exactly at rest, on walls too, p inside is the true one, and the sum over a cap is -2 pi a gamma sin(theta) with a the
 // true radius, since the wall's P counts whole columns of liquid.
@@ -35,7 +35,7 @@ namespace imbibe {
 
 struct SurfaceParams {
   Real offset = 0.5;              // dx
-  Real numerical_viscosity = 0.1;  // of sqrt(gamma dx/rho), the least kinematic viscosity: see least_viscosity()
+  Real numerical_viscosity = 0.1;  // of sqrt(gamma dx/rho), the least kinematic viscosity at walls: see least_viscosity()
   Real damping = 1;               // strength of the grid-scale filter per shortest capillary time (damping.h)
   ContactAngleParams contact;
 };
@@ -44,7 +44,7 @@ template <class V>
 void describe(V& v, SurfaceParams& p) {
   v.value("offset", p.offset, {.min = 0, .max = 1, .help = "depth of the outermost particles under the surface, in spacings"});
   v.value("numerical_viscosity", p.numerical_viscosity,
-          {.min = 0, .max = 2, .help = "least viscosity, for stability, of sqrt(surface tension x spacing / density)"});
+          {.min = 0, .max = 2, .help = "least viscosity next to walls, for stability, of sqrt(surface tension x spacing / density)"});
   v.value("damping", p.damping,
           {.min = 0, .max = 1, .help = "filter of motions as small as the spacing, per shortest capillary time"});
   v.group("contact", p.contact, "contact line");
@@ -76,9 +76,9 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
                               std::span<const Wall> walls, Real dt, SurfaceScratch& scratch,
                               std::vector<ParticleClass>& kinds, std::vector<Vec3>& impulse);
 
-// m2/s, kinematic: less is raised to it, a thicker liquid keeps its own (so oils damp as they should). Motions of a few
-// spacings would otherwise gain energy from the curvature's error. Scales with dx^(1/2): about 9 times water's at
-// dx = 0.12 mm.
+// m2/s, kinematic, next to walls: less is raised to it there, a thicker liquid keeps its own (so oils damp as they should).
+// Motions of a few spacings would otherwise gain energy at contact lines; away from walls damping.h is enough, and a free
+// drop swings as its own viscosity lets it. Scales with dx^(1/2): about 9 times water's at dx = 0.12 mm.
 Real least_viscosity(const SurfaceParams& params, Real surface_tension, Real density, Real spacing);
 
 }  // namespace imbibe

@@ -1,14 +1,18 @@
 // Viscosity of the liquid and friction at walls.
 //
-//   a_i = nu sum_j 10 V (u_ij . x_ij)/r^2 grad W      (factor 2 (dim + 2) = 10)
-//   wall: a_i = -friction nu half_space_shear(d_i) u_t    the same sum over the solid, whose velocity continues the
+//   a_i = sum_j nu_ij 10 V (u_ij . x_ij)/r^2 grad W      (factor 2 (dim + 2) = 10)
+//   wall: a_i = -friction w_i nu_i half_space_shear(d_i) u_t    the same sum over the solid, whose velocity continues the
 //         liquid's linearly through the surface's own velocity (zero unless it runs as a belt; kernel.h); u_t tangential,
 //         against the surface
+//   nu_ij = (w_i nu_i + w_j nu_j)/2,  w_i = (1 - sum_k friction_k lambda_k)/C_i in [1, 3]
+//         what the pairs of i miss of a whole kernel: C its liquid's part, lambda_k the walls' (boundary.h), which friction
+//         makes up for at a wall that holds the liquid. At a wall that it slips along, and under a free surface, the motion
+//         goes on like its mirror image: without w a layer of 6 spacings between two such faces had 0.87 of its viscosity
 //   u_ij = u_i - u_j [m/s], x_ij = x_i - x_j [m], nu = eta/rho0 [m2/s], eta dynamic viscosity [Pa s], V = m/rho0 [m3]
 // Sources: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543 (form along the line of centres); Cleary & Monaghan,
 // J. Comput. Phys. 148 (1999) 227; walls by linear continuation: Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214.
 // The pair force acts along the line of centres: linear and angular momentum are conserved to rounding. A free surface
-// is free of stress because nothing is there to sum over.
+// is free of stress because nothing is there to sum over. Shear across it would need no w, but vanishes there.
 // Stability: explicit for dt <= explicit_limit (H/2)^2/nu; a longer step is made implicitly, (1 - dt A) u = u_old, by
 // conjugate gradients (A is symmetric and negative), so viscosity never bounds the step.
 // Tested in tests/liquid/viscosity_test.cpp: momentum, decay of a shear wave, implicit against explicit, wall shear.
@@ -49,9 +53,14 @@ T viscous_pair_rate(T viscosity_over_density, T volume, T slope) {
   return -10 * viscosity_over_density * volume * slope;
 }
 
-// Changes f.velocity by viscosity over dt; impulse[wall] gets what friction gave to each wall, N s. Soft sheets are dragged
-// explicitly, by no more than brings them to the liquid's velocity.
-ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, Real viscosity, Real dt,
+// Pa s: in the bulk, and, if larger, next to walls: up to H/2 from them, fading to the bulk's at H.
+struct ViscosityAt {
+  Real bulk = 0, walls = 0;
+};
+
+// Changes f.velocity by viscosity over dt (w is work space); impulse[wall] gets what friction gave to each wall, N s. Soft
+// sheets are dragged explicitly, by no more than brings them to the liquid's velocity.
+ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, const ViscosityAt& viscosity, Real dt,
                                 std::span<const Wall> walls, std::vector<Vec3>& impulse);
 
 }  // namespace imbibe

@@ -76,6 +76,8 @@ void visit_state(Visitor& v, AnyWorld& world) {
   v.value("steps", world.density.steps);
   v.value("sum_of_means", world.density.sum_of_means);
   v.value("worst_mean", world.density.worst_mean);
+  v.value("sum_of_compressions", world.density.sum_of_compressions);
+  v.value("worst_mean_compression", world.density.worst_mean_compression);
   v.value("worst_particle", world.density.worst_particle);
 
   v.group("liquid");

@@ -143,6 +143,8 @@ void move_liquid(World& world, Real max_step, StepScratch& scratch, StepReport& 
   ++density.steps;
   density.sum_of_means += liquid.density_error;
   density.worst_mean = std::max(density.worst_mean, liquid.density_error);
+  density.sum_of_compressions += liquid.compression;
+  density.worst_mean_compression = std::max(density.worst_mean_compression, liquid.compression);
   density.worst_particle = std::max(density.worst_particle, liquid.peak_density_error);
   report.surface_force = liquid.surface_force;
   report.pressure_iterations = liquid.pressure_iterations;

@@ -70,8 +70,11 @@ struct DensityRecord {
   std::uint64_t steps = 0;    // SPH steps
   Real sum_of_means = 0;      // of each step's mean |error| over the particles
   Real worst_mean = 0;        // the largest of these means
+  Real sum_of_compressions = 0;  // of each step's mean compression (LiquidStepReport::compression)
+  Real worst_mean_compression = 0;
   Real worst_particle = 0;    // the largest compression of one particle
   Real mean() const { return steps > 0 ? sum_of_means / static_cast<Real>(steps) : 0; }
+  Real mean_compression() const { return steps > 0 ? sum_of_compressions / static_cast<Real>(steps) : 0; }
 };
 
 // Where all the liquid is, kg. free + sorbed + yarn + pore + cell + waiting - owed + evaporated + left
