@@ -20,40 +20,19 @@ constexpr std::size_t completion_entries = 512;
 // |n| H of a flat surface at its steepest, depth 0: 21 (1 - 3/2 + 4/7).
 constexpr double steepest = 21.0 * (1.0 - 1.5 + 4.0 / 7.0);
 
-// lambda and depth in H over |n| H at equal steps of |n| H, both for depths from H (0) to 0 (steepest).
-struct CompletionTable {
-  std::array<float, completion_entries + 1> lambda{}, depth{};
-
-  CompletionTable() {
-    for (std::size_t k = 0; k <= completion_entries; ++k) {
-      const double wanted = steepest * static_cast<double>(k) / completion_entries;
-      double near = 0, far = 1;  // depth in H; the slope falls with depth
-      for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (near + far);
-        (-half_space_integral(middle, 1).slope > wanted ? near : far) = middle;
-      }
-      lambda[k] = static_cast<float>(half_space_integral(near, 1).lambda);
-      depth[k] = static_cast<float>(near);
+// lambda over |n| H at equal steps of |n| H, both for depths from H (0) to 0 (steepest).
+std::array<float, completion_entries + 1> completion_table() {
+  std::array<float, completion_entries + 1> table{};
+  for (std::size_t k = 0; k <= completion_entries; ++k) {
+    const double wanted = steepest * static_cast<double>(k) / completion_entries;
+    double near = 0, far = 1;  // depth in H; the slope falls with depth
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (near + far);
+      (-half_space_integral(middle, 1).slope > wanted ? near : far) = middle;
     }
+    table[k] = static_cast<float>(half_space_integral(near, 1).lambda);
   }
-  static float at(const std::array<float, completion_entries + 1>& values, float gradient_h) {
-    const float place = std::min(gradient_h * static_cast<float>(completion_entries / steepest),
-                                 static_cast<float>(completion_entries) - 0.001f);
-    const auto k = static_cast<std::size_t>(place);
-    return values[k] + (place - static_cast<float>(k)) * (values[k + 1] - values[k]);
-  }
-};
-
-const CompletionTable& completion_table() {
-  static const CompletionTable table;
   return table;
-}
-
-// Inside the liquid |grad lambda_a| H is 0.05 by the particles' disorder alone: taken for air, it would let the liquid
-// swell by 0.3 %.
-float without_disorder(float gradient_h) {
-  constexpr float disorder = 0.07f;
-  return std::sqrt(std::max(0.0f, gradient_h * gradient_h - disorder * disorder));
 }
 
 // How far the gap between a particle and a wall is filled: |n + G| along the wall's normal is 0 where liquid reaches down
@@ -97,16 +76,19 @@ void leave_dry_walls(Boundary& boundary, std::size_t i, const Vec3f& liquid, flo
 
 }  // namespace
 
-float air_completion(float gradient_h) { return CompletionTable::at(completion_table().lambda, gradient_h); }
-
-AirGap air_gap(float gradient_h) {
-  const float h = without_disorder(gradient_h);
-  const CompletionTable& table = completion_table();
-  return {CompletionTable::at(table.lambda, h), h * CompletionTable::at(table.depth, h)};
+float air_completion(float gradient_h) {
+  static const auto table = completion_table();
+  const float place = std::min(gradient_h * static_cast<float>(completion_entries / steepest),
+                               static_cast<float>(completion_entries) - 0.001f);
+  const auto k = static_cast<std::size_t>(place);
+  return table[k] + (place - static_cast<float>(k)) * (table[k + 1] - table[k]);
 }
 
 float density_error(float colour, float wall_lambda, float gradient_h) {
-  gradient_h = without_disorder(gradient_h);
+  // Inside the liquid |grad lambda_a| H is 0.05 by the particles' disorder alone: taken for air, it would let the liquid
+  // swell by 0.3 %.
+  constexpr float disorder = 0.07f;
+  gradient_h = std::sqrt(std::max(0.0f, gradient_h * gradient_h - disorder * disorder));
   const float filling = colour + wall_lambda;
   const float lowest = -0.05f * std::clamp((filling - 0.5f) / 0.15f, 0.0f, 1.0f);
   if (lowest == 0) return std::max(0.0f, filling - 1);

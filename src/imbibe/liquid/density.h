@@ -36,13 +36,6 @@ void compute_density(LiquidFields& f);
 // lambda_a for gradient_h = |grad lambda_a| H.
 float air_completion(float gradient_h);
 
-// The air that a particle with this |grad lambda_a| H misses neighbours in, less the disorder of particles inside.
-struct AirGap {
-  float lambda = 0;  // its part of the kernel
-  float moment = 0;  // d A: what the second moment across the surface misses besides (gradient_correction.h)
-};
-AirGap air_gap(float gradient_h);
-
 // e from the colour C, the walls' lambda and |n + f G| H; at least -0.05. Spray (C + lambda < 0.5) is free to be thin:
 // max(0, C + lambda - 1) there.
 float density_error(float colour, float wall_lambda, float gradient_h);

@@ -1,10 +1,7 @@
 #include "imbibe/liquid/gradient_correction.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "imbibe/liquid/density.h"
 
 namespace imbibe {
 
@@ -16,6 +13,7 @@ using simd::lanes;
 namespace {
 
 constexpr float most_correction = 0.5f;               // of |L - I|
+constexpr float surface_from = 0.15f, surface_to = 0.4f;  // of |n + f G| H: between, L fades to I
 constexpr float singular_from = 1e-3f, singular_to = 1e-2f;  // of det M: between, L fades to I
 
 struct Matrix {
@@ -42,23 +40,22 @@ Moments second_moments(const LiquidFields& f, const Slice& s) {
   return m;
 }
 
+// 1 inside, 0 where the free surface cuts the pairs of particle i.
+float inside(const LiquidFields& f, std::size_t i) {
+  return std::clamp((surface_to - f.colour_gradient[i].w) / (surface_to - surface_from), 0.0f, 1.0f);
+}
+
 // B of particle i.
 Matrix even_moment(const LiquidFields& f, std::size_t i, float stress) {
-  const Float4 &wall = f.boundary.wall[i], &liquid = f.colour_gradient[i];
-  const float open = std::max(1 - wall.w, 0.25f);
-  const AirGap air = air_gap(liquid.w / open);
-  const float whole = stress * (1 - wall.w) * (1 - air.lambda), beside_air = stress * (1 - air.lambda);
+  const Float4& wall = f.boundary.wall[i];
+  const float whole = stress * (1 - wall.w);
   Matrix b{{{whole, 0, 0}, {0, whole, 0}, {0, 0, whole}}};
   // A sample's gradient is -A m with the other walls' factors; the sum in `wall` is without walls across a gap (density.h).
   Vec3f all{};
   for (const WallSample& s : f.boundary.samples(i)) all += s.gradient;
   const float met = dot(all, Vec3f{wall.x, wall.y, wall.z}) / std::max(dot(all, all), 1e-20f);
   for (const WallSample& s : f.boundary.samples(i))
-    b.add(beside_air * met * std::max(s.distance, 0.0f), s.gradient, s.normal);
-  if (air.lambda > 0) {
-    const Vec3f inward = normalized(Vec3f{liquid.x + wall.x, liquid.y + wall.y, liquid.z + wall.z});
-    b.add(-stress * open * air.moment, inward, inward);
-  }
+    b.add(stress * met * std::max(s.distance, 0.0f), s.gradient, s.normal);
   return b;
 }
 
@@ -69,7 +66,8 @@ Matrix correction(const LiquidFields& f, std::size_t i, const Moments& m, std::s
                           {c * e - b * g, a * g - c * c, b * c - a * e},
                           {b * e - c * d, b * c - a * e, a * d - b * b}};
   const float determinant = a * minor[0].x + b * minor[0].y + c * minor[0].z;
-  const float regular = std::clamp((determinant - singular_from) / (singular_to - singular_from), 0.0f, 1.0f);
+  const float regular =
+      inside(f, i) * std::clamp((determinant - singular_from) / (singular_to - singular_from), 0.0f, 1.0f);
   if (regular == 0) return {};
   const Matrix even = even_moment(f, i, stress);
   Matrix change;

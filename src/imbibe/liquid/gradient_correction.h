@@ -3,18 +3,19 @@
 //   D(u)_i = sum_j V (u_i - u_j).(L_i grad W_ij) + ...     a(k)_i = -sum_j V (k_i L_i + k_j L_j) grad W_ij - ...   (pressure.h)
 //   L_i = B_i M_i^-1
 //   M_i = -sum_j V x_ij (x) grad W_ij       second moment of i's pairs, 1
-//   B_i = s [(1 - lambda)(1 - lambda_a) I - sum_f d_f A_f m_f (x) m_f prod_{g != f} (1 - lambda_g)]      what M is in evenly
-//         spread liquid that ends at walls and at a free surface: each face f a half-space at depth d_f with normal m_f,
-//         of which lambda(d) is missing, A = -dlambda/dd (kernel.h); the free surface's depth from the colour gradient as in
-//         density.h. s = lattice_stress (kernel.h)
-// So D of a linear field does not depend on how the particles lie, and L = I where they lie evenly: walls and surfaces keep
-// the operator they have (wall_push.h, surface_tension.h). With plain gradients D sees a shear of disordered particles as
+//   B_i = s [(1 - lambda) I - sum_k d_k A_k m_k (x) m_k prod_{l != k} (1 - lambda_l)]      what M is in evenly spread liquid
+//         that ends at walls k, half-spaces at distance d_k with normal m_k, of which lambda is missing, A = -dlambda/dd
+//         (kernel.h); s = lattice_stress (kernel.h)
+// So D of a linear field does not depend on how the particles lie, and L = I where they lie evenly: walls keep the operator
+// they have (wall_push.h). With plain gradients D sees a shear of disordered particles as
 // compression, and a liquid under pressure resists every shear as if by dry friction: a vortex of Re 100 in a layer 10 mm
 // wide under its own weight kept 0.13 of its due speed at 12 particles across, 0.56 at 24
 // (docs/decisions/0010-corrected-gradients-in-the-pressure.md).
 // Since the force is still minus the transpose of D, the operator stays symmetric and momentum is exact; L M = B is symmetric,
 // so a rotation is no compression and angular momentum is exact as well.
-// Limits: |L - I| <= 1/2 (Frobenius); L = I for spray, and where M is nearly singular (one layer, a thread).
+// Limits: |L - I| <= 1/2 (Frobenius); L = I where M is nearly singular (one layer, a thread), for spray, and under a free
+// surface, fading in over |n + f G| H = 0.4 to 0.15: the pressure there is small, and a B that follows a surface whose depth is
+// guessed from the colour gradient brakes (vortex 0.88, the drop of water 40 % shorter of breath).
 // Tested in tests/liquid/gradient_correction_test.cpp.
 #pragma once
 

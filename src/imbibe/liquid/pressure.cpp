@@ -232,6 +232,12 @@ void report_density(const LiquidFields& f, PressureReport& report) {
 
 }  // namespace
 
+void uniform_pressure_response(LiquidFields& f) {
+  parallel_for(f.count, [&](std::size_t i) { f.position[i].w = -0.5f / std::max(1 - f.boundary.wall[i].w, 0.1f); });
+  pressure_acceleration(f);
+  parallel_for(f.count, [&](std::size_t i) { f.position[i].w = 0; });
+}
+
 PressureReport project_velocity(LiquidFields& f, const PressureParams& params, Real dt_s, Real relaxation,
                                 std::vector<float>& warm, SheetContacts* sheets) {
   PressureReport report;

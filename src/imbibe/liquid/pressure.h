@@ -35,6 +35,7 @@ struct PressureParams {
   int max_iterations = 60;
   Real density_time = 5;      // tau in units of sqrt(rho dx^3/(2 pi gamma)); with gamma = 0: in steps / 2
   Real spray_filling = 0.4;   // below: k = 0
+  bool corrected_gradients = true;  // gradient_correction.h; off: a quarter less time, and dry friction under pressure
 };
 
 template <class V>
@@ -46,6 +47,8 @@ void describe(V& v, PressureParams& p) {
           {.min = 1, .max = 1000, .help = "time in which an error of density fades, in shortest capillary times"});
   v.value("spray_filling", p.spray_filling,
           {.min = 0, .max = 0.6, .help = "a particle whose kernel is filled less than this has no pressure"});
+  v.value("corrected_gradients", p.corrected_gradients,
+          {.help = "gradients of the pressure exact for linear flows; without, liquid under pressure resists shear as if by dry friction"});
 }
 
 struct PressureReport {
@@ -62,5 +65,9 @@ struct PressureReport {
 // sheets: soft sheets that move and give way (sheet_wall.h), their impulse booked at their feet; none: all walls stand.
 PressureReport project_velocity(LiquidFields& f, const PressureParams& params, Real dt, Real relaxation,
                                 std::vector<float>& warm, SheetContacts* sheets = nullptr);
+
+// f.acceleration = -a(k)/2 for the uniform pressure k = 1/(1 - lambda): what it does to each particle, 1/m. Away from walls, with
+// plain gradients, the colour gradient.
+void uniform_pressure_response(LiquidFields& f);
 
 }  // namespace imbibe

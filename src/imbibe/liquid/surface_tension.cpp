@@ -6,6 +6,7 @@
 
 #include "imbibe/core/union_find.h"
 #include "imbibe/liquid/classes.h"
+#include "imbibe/liquid/pressure.h"
 #include "imbibe/liquid/tangent_fit.h"
 
 namespace imbibe {
@@ -221,30 +222,6 @@ Vec3f curvature_slope(const Stage& t, std::size_t i) {
   return fit.first() * slopes.s11 + fit.second() * slopes.s12;
 }
 
-// L of particle i times x; x itself where the operator has none.
-Vec3f corrected(const LiquidFields& f, std::size_t i, const Vec3f& x) {
-  if (!f.corrected) return x;
-  const Float4* row = &f.correction[3 * i];
-  return {dot(xyz(row[0]), x), dot(xyz(row[1]), x), dot(xyz(row[2]), x)};
-}
-
-// What a uniform pressure does to particle i, per Pa and over V: half of the pressure operator's response to k = 1/(1 - lambda)
-// (pressure.h). Away from walls the colour gradient, but for the operator's corrections.
-Vec3f pressure_response(const Stage& t, std::size_t i) {
-  const LiquidFields& f = t.f;
-  if (!f.corrected && f.boundary.samples(i).empty()) return xyz(f.colour_gradient[i]);
-  const auto open = [&](std::size_t j) { return 1 / std::max(1 - f.boundary.wall[j].w, 0.1f); };
-  Vec3f sum{};
-  const std::size_t lane = i % simd::lanes;
-  const Slice s = f.neighbours.slice(i - lane);
-  for (std::size_t k = lane; k < s.slots * simd::lanes; k += simd::lanes) {
-    const Index j = s.index[k];
-    if (j >= f.count) break;  // padding ends every list
-    sum += corrected(f, j, xyz(f.position[i]) - xyz(f.position[j])) * (0.5f * open(j) * f.volume * s.slope[k]);
-  }
-  return sum + (xyz(f.boundary.push[i]) + corrected(f, i, xyz(f.colour_gradient[i])) * 0.5f) * open(i);
-}
-
 // Force on particle i; what the line gives to walls is added to impulse (of the tile).
 void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
   LiquidFields& f = t.f;
@@ -269,7 +246,7 @@ void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
     f.boundary.give(i, wall, given);
   }
   Vec3f surface{};
-  if (kappa != 0) surface = pressure_response(t, i) * (2 * t.gamma * kappa);
+  if (kappa != 0) surface = xyz(f.acceleration[i]) * (2 * t.gamma * kappa);
   if (t.s.trust[i] > 0) surface -= curvature_slope(t, i) * (t.depth() / f.spacing * t.gamma * t.s.trust[i]);
   surface = surface / f.rest_density;
   const Vec3f a = surface + line / f.particle_mass;
@@ -365,6 +342,7 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
     if (f.surface[i]) fit_curvature(t, i);
   });
   parallel_for(f.count, [&](std::size_t i) { extend(t, i); });
+  uniform_pressure_response(f);
   const std::size_t tiles = (f.count + default_tile - 1) / default_tile;
   scratch.wall_parts.assign(tiles * walls.size(), {});
   parallel_tiles(f.count, [&](std::size_t begin, std::size_t end) {
