@@ -16,6 +16,8 @@
 // Limits: |L - I| <= 1/2 (Frobenius); L = I where M is nearly singular (one layer, a thread), for spray, and under a free
 // surface, fading in over |n + f G| H = 0.4 to 0.15: the pressure there is small, and a B that follows a surface whose depth is
 // guessed from the colour gradient brakes (vortex 0.88, the drop of water 40 % shorter of breath).
+// Liquid with surface tension keeps plain gradients: its thin films, held by hardly any pressure of their own, do not come to
+// rest with L (decision 10).
 // Tested in tests/liquid/gradient_correction_test.cpp.
 #pragma once
 

@@ -35,7 +35,7 @@ struct PressureParams {
   int max_iterations = 60;
   Real density_time = 5;      // tau in units of sqrt(rho dx^3/(2 pi gamma)); with gamma = 0: in steps / 2
   Real spray_filling = 0.4;   // below: k = 0
-  bool corrected_gradients = true;  // gradient_correction.h; off: a quarter less time, and dry friction under pressure
+  bool corrected_gradients = true;  // gradient_correction.h, of liquid without surface tension; off: dry friction under pressure
 };
 
 template <class V>
@@ -48,7 +48,7 @@ void describe(V& v, PressureParams& p) {
   v.value("spray_filling", p.spray_filling,
           {.min = 0, .max = 0.6, .help = "a particle whose kernel is filled less than this has no pressure"});
   v.value("corrected_gradients", p.corrected_gradients,
-          {.help = "gradients of the pressure exact for linear flows; without, liquid under pressure resists shear as if by dry friction"});
+          {.help = "without surface tension: gradients of the pressure exact for linear flows; else liquid under pressure resists shear as if by dry friction"});
 }
 
 struct PressureReport {
