@@ -192,15 +192,13 @@ Energy energy_without_losses(const std::string& model, const std::string& strain
 }
 
 TEST(SeedB, WithoutAbsorptionAndDragEnergyNeverGrows) {
-  for (const char* model : {"provot", "xpbd"}) {
-    // What grows is what the cloth's solver leaves of its strains: a hundredth of a per cent of what was lost where it solves
-    // to that, three thousandths at the default tolerance of 0.2 %.
-    for (const auto& [strain_error, most] : {std::pair{"1e-4", 3e-4}, std::pair{"2e-3", 5e-3}}) {
-      const Energy energy = energy_without_losses(model, strain_error);
-      RecordProperty(std::string(model) + "_" + strain_error, std::to_string(energy.growth / energy.lost));
-      EXPECT_GT(energy.lost, 1e-3);
-      EXPECT_LT(energy.growth, most * energy.lost) << model << " " << strain_error;
-    }
+  // Of what was lost. Provot: what the springs' solver leaves of its strains. Xpbd: stiff threads are stretched for a step by
+  // the liquid's push, which they take back in the next (decision 0007).
+  for (const auto& [model, most] : {std::pair{"provot", 4e-3}, std::pair{"xpbd", 4e-2}}) {
+    const Energy energy = energy_without_losses(model, "2e-3");
+    RecordProperty(model, std::to_string(energy.growth / energy.lost));
+    EXPECT_GT(energy.lost, 1e-3);
+    EXPECT_LT(energy.growth, most * energy.lost) << model;
   }
 }
 

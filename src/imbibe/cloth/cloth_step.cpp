@@ -332,12 +332,6 @@ PushReport push_cloth(Sheet& sheet, const ClothParams& params, std::span<const R
     if (inverse_mass[i] == 0) report.pin_impulse -= impulse[i];
   }
   const NodeMotion nodes{sheet.position.data(), work.push.data(), inverse_mass.data(), work.held.data()};
-  update_materials(sheet, work.topology, params, work.elastic);
-  begin_in_balance(work.topology, params, nodes, dt, work.elastic);
-  for (int pass = 1; pass <= most_passes; ++pass) {
-    const InPlaneOutcome outcome = solve_in_plane(work.topology, params, nodes, dt, work.elastic);
-    if (std::max(outcome.threads.change(), pass * outcome.relaxed.change()) < converged_part * params.strain_error) break;
-  }
   SelfContact& self = work.self;
   if (params.contact.self) {
     if (self.position != sheet.position) self.room.clear();

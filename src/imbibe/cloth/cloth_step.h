@@ -156,9 +156,8 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
                            ClothScratch& scratch);
 
 // Impulses (N s per node) of something that went along with the sheet during its last step of dt: they change velocity AND
-// place, v += w, x += dt w, w = J/m less what the stretch and shear that this motion alone would cause give back, backward
-// in time: a stiff sheet stores no more energy than the impulses bring. Layers that would cross on that way stop each
-// other, by equal and opposite impulses: a sheet that starts without crossings has none after it. inverse_mass: 1/kg per node, 0 where a support holds it.
+// place, v += J/m, x += dt J/m. Layers that would cross on that way stop each other, by equal and opposite impulses: a sheet
+// that starts without crossings has none after it. inverse_mass: 1/kg per node, 0 where a support holds it.
 struct PushReport {
   Vec3 pin_impulse{};           // N s on the sheet, by supports
   std::size_t swept_hits = 0;   // crossings prevented

@@ -100,28 +100,6 @@ void begin_in_plane(const SheetTopology& t, const ClothParams& params, ElasticWo
   begin_thread_stretch(t.thread_stretch, work.threads);
 }
 
-void begin_in_balance(const SheetTopology& t, const ClothParams& params, const NodeMotion& nodes, Real dt,
-                      ElasticWork& work) {
-  const auto hold = [&](const auto& pieces, const std::vector<PieceMaterial>& materials, std::vector<Real>& given, auto&& strain) {
-    given.resize(pieces.size());
-    parallel_for(pieces.size(), [&](std::size_t k) { given[k] = -dt * materials[k].stiffness * strain(pieces[k]); });
-  };
-  const auto stretch = [&](const auto& piece) { return norm(linear_form(nodes.position, piece.node, piece.weight)) - 1; };
-  const auto shear = [&](const auto& piece) {
-    return dot(normalized(linear_form(nodes.position, piece.node, piece.weft)),
-               normalized(linear_form(nodes.position, piece.node, piece.warp)));
-  };
-  if (params.model == ClothModel::provot) {
-    hold(t.springs.pieces, work.springs, work.given_stretch, stretch);
-    begin_balanced_stretch(t.spring_threads, work.spring_threads, nodes.position, dt, work.threads);
-    return;
-  }
-  hold(t.triangle_stretch.pieces, work.triangle_stretch, work.given_stretch, stretch);
-  hold(t.cell_shear.pieces, work.cell_shear, work.given_cell_shear, shear);
-  hold(t.triangle_shear.pieces, work.triangle_shear, work.given_triangle_shear, shear);
-  begin_balanced_stretch(t.thread_stretch, work.thread_stretch, nodes.position, dt, work.threads);
-}
-
 InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params, const NodeMotion& nodes, Real dt,
                               ElasticWork& work) {
   InPlaneOutcome all;

@@ -35,9 +35,6 @@ void solve_bending(const SheetTopology& topology, const ClothParams& params, con
 // One pass over what holds the sheet together in its plane: shear and stretch of the fabric, or the springs with their
 // correction. The impulses of the passes of a substep add up to those of backward Euler; begin_ comes before the first.
 void begin_in_plane(const SheetTopology& topology, const ClothParams& params, ElasticWork& work);
-// As begin_in_plane, for nodes whose strains are in balance where they are: the passes answer to their velocities alone.
-void begin_in_balance(const SheetTopology& topology, const ClothParams& params, const NodeMotion& nodes, Real dt,
-                      ElasticWork& work);
 struct InPlaneOutcome {
   PassOutcome threads;  // solved at once
   PassOutcome relaxed;  // solved one by one

@@ -132,20 +132,6 @@ PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::ve
   return all;
 }
 
-template <class Piece>
-void begin_balanced_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
-                            const Vec3* position, Real dt, ThreadSolve& work) {
-  begin_thread_stretch(threads, work);
-  parallel_for(threads.pieces.size(), [&](std::size_t e) {
-    const Piece& piece = threads.pieces[e];
-    work.impulse[e] = -dt * materials[e].stiffness * (norm(linear_form(position, piece.node, piece.weight)) - 1);
-  });
-}
-
-template void begin_balanced_stretch(const ThreadList<StretchPiece<2>>&, const std::vector<PieceMaterial>&, const Vec3*,
-                                     Real, ThreadSolve&);
-template void begin_balanced_stretch(const ThreadList<SpringPiece>&, const std::vector<PieceMaterial>&, const Vec3*, Real,
-                                     ThreadSolve&);
 template void begin_thread_stretch(const ThreadList<StretchPiece<2>>&, ThreadSolve&);
 template void begin_thread_stretch(const ThreadList<SpringPiece>&, ThreadSolve&);
 template PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>&, const std::vector<PieceMaterial>&,

@@ -50,10 +50,6 @@ void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work);
 template <class Piece>
 PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
                                  const NodeMotion& nodes, Real dt, ThreadSolve& work);
-// Instead of begin_: the impulses that hold the strains of the places as they are, so that the passes answer to motion alone.
-template <class Piece>
-void begin_balanced_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
-                            const Vec3* position, Real dt, ThreadSolve& work);
 // Provot's correction (impulse.h) of the springs of all lines but those of flexion.
 void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt);
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,

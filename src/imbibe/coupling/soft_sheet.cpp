@@ -12,7 +12,6 @@ namespace {
 constexpr Real calm_speed = 1e-3;  // m/s, root mean square, below which a sheet counts as still
 constexpr Real calm_time = 0.5;    // s of it until it rests
 constexpr Real least_waking_share = 0.01;  // of its weight: a change of load that moves a resting sheet again
-constexpr Real expectation_time = 2e-3;     // s: a few steps of the liquid
 constexpr Real load_averaging_time = 0.05;  // s: some hundred steps of the liquid, whose pressure flickers by a few per cent
 
 Vec3 xyz(const Float4& f) { return {f.x, f.y, f.z}; }
@@ -76,13 +75,6 @@ void judge_load(SoftSheet& soft, const Vec3& gravity, Real dt) {
   if (norm(soft.load.force - soft.load_at_rest.force) > least ||
       norm(soft.load.moment - soft.load_at_rest.moment) > least * half_extent(soft.sheet))
     wake(soft);
-}
-
-// What each node is to expect of the liquid in the next step.
-void learn_expected(SoftSheet& soft, const std::vector<Vec3>& impulse, Real dt) {
-  const Real blend = std::min(1.0, dt / expectation_time);
-  soft.expected.resize(impulse.size());
-  for (std::size_t n = 0; n < impulse.size(); ++n) soft.expected[n] += blend * (impulse[n] / dt - soft.expected[n]);
 }
 
 // Whether `surface` is the sheet as it is, standing still.
@@ -236,24 +228,16 @@ void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& g
     book_liquid_impulse(soft, soft.sheet.position[n], impulse[n]);
     sum += impulse[n];
   }
-  if (!soft.moves()) {
-    soft.support_impulse -= sum;
-  } else {
-    std::vector<Vec3>& beyond = scratch.push;
-    beyond = impulse;
-    for (std::size_t n = 0; n < soft.expected.size(); ++n) beyond[n] -= dt * soft.expected[n];
-    if (std::any_of(beyond.begin(), beyond.end(), [](const Vec3& j) { return j != Vec3{}; }))
-      soft.support_impulse +=
-          push_cloth(soft.sheet, soft.cloth, scratch.inverse_mass, beyond, dt, scratch.cloth).pin_impulse;
-  }
-  learn_expected(soft, impulse, dt);
+  if (!soft.moves()) soft.support_impulse -= sum;
+  else if (sum != Vec3{})
+    soft.support_impulse +=
+        push_cloth(soft.sheet, soft.cloth, scratch.inverse_mass, impulse, dt, scratch.cloth).pin_impulse;
   judge_load(soft, gravity, dt);
 }
 
 ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
-                              std::span<const ClothSolid> solids, Real dt, bool with_liquid) {
+                              std::span<const ClothSolid> solids, Real dt) {
   ClothStepReport report;
-  if (!with_liquid) soft.expected.clear();
   Sheet& sheet = soft.sheet;
   if (!soft.moves()) {
     sheet.time += dt;
@@ -265,12 +249,10 @@ ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const 
   }
   if (scratch.surface.empty()) set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   scratch.before = sheet.position;
-  report = step_cloth(sheet, soft.cloth, {.force = soft.expected, .gravity = gravity, .solids = solids, .measure = false}, dt, scratch.cloth);
+  report = step_cloth(sheet, soft.cloth, {.gravity = gravity, .solids = solids, .measure = false}, dt, scratch.cloth);
   soft.support_impulse += report.pin_impulse + report.solid_impulse;
   scratch.wall_velocity.resize(sheet.size());
   for (std::size_t n = 0; n < sheet.size(); ++n) scratch.wall_velocity[n] = (sheet.position[n] - scratch.before[n]) / dt;
-  for (std::size_t n = 0; n < soft.expected.size(); ++n)
-    if (!scratch.held[n]) scratch.wall_velocity[n] -= (dt / sheet.mass(n)) * soft.expected[n];
   return report;
 }
 

@@ -39,7 +39,6 @@ struct SoftSheet {
   Vec3 liquid_impulse{};          // N s, given to the sheet by free liquid since the start (state)
   SheetLoad given{};              // N s and N m s, by free liquid in this step (state)
   SheetLoad load{};               // by free liquid, running mean (state)
-  std::vector<Vec3> expected{};   // N per node, what free liquid is about to give: running mean; empty: none yet (state)
   Real calm_s = 0;                // s for which it has hardly moved (state)
   Real mass_at_rest = 0;          // kg, when it came to rest (state)
   SheetLoad load_at_rest{};       // then (state)
@@ -60,7 +59,6 @@ struct SoftSheetScratch {
   std::vector<Vec3> wall_velocity;  // m/s per node, mean over the cloth's step: what the liquid meets
   std::vector<std::uint8_t> held;  // per node: a support holds it, or rest does
   std::vector<Real> inverse_mass;  // 1/kg per node, 0: held
-  std::vector<Vec3> push;          // N s per node, of the liquid beyond what was expected
   SheetWall wall;                  // what the liquid's solver sees of it
   std::vector<SheetHit> hits;      // of the liquid's particles in this step
   std::vector<std::vector<SheetHit>> hit_tiles;
@@ -108,19 +106,16 @@ std::size_t throw_back(SoftSheet& soft, SoftSheetScratch& scratch, Liquid& liqui
                        Real gap, const ImpactParams& impact, std::uint64_t seed, std::uint64_t step);
 
 // A step of sheet and liquid:
-//   advance_sheet      the cloth's own step, under all forces, of the liquid's those that it is expected to give, F
-//   sheet_as_wall      where it was at the start, with its mean velocity over the step less dt F/m, for the liquid's step of
-//                      the same dt: the liquid's solver adds dt F/m, or whatever it finds, itself
-//   take_wall_impulse  what the liquid gave beyond dt F changes velocity AND place: v += (J - dt F)/m, x += dt (J - dt F)/m,
-//                      as far as its own layers let it (push_cloth). The liquid moved with the sheet so pushed; a push in
-//                      velocity alone would let a taut sheet drift into what lies on it, by T dt/m (0.3 m/s for 4 kg/m2 on
-//                      a shirt at 1 ms), step after step; without F it would contract and be pushed back by as much.
-//                      A resting sheet wakes here when the mean load is no longer the one it rests under.
+//   advance_sheet      the cloth's own step, under all forces but the liquid's
+//   sheet_as_wall      where it was at the start, with its mean velocity over the step, for the liquid's step of the same dt
+//   take_wall_impulse  what the liquid gave it changes velocity AND place: v += J/m, x += dt J/m, as far as its own layers let
+//                      it (push_cloth). The liquid moved with the sheet so pushed; a push in velocity alone would let a taut
+//                      sheet drift into what lies on it, by T dt/m (0.3 m/s for 4 kg/m2 on a shirt at 1 ms), step after
+//                      step. A resting sheet wakes here when the mean load is no longer the one it rests under.
 //   finish_sheet       sets scratch.surface over the whole step, for the swept contact
 // Of a sheet at rest or fixed nothing is computed but whether it is to wake.
-// with_liquid: a step of the liquid and take_wall_impulse follow.
 ClothStepReport advance_sheet(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity,
-                              std::span<const ClothSolid> solids, Real dt, bool with_liquid);
+                              std::span<const ClothSolid> solids, Real dt);
 Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch);
 void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& gravity, Real dt);
 void finish_sheet(SoftSheet& soft, SoftSheetScratch& scratch, Real dt);

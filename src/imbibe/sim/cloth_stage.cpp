@@ -103,13 +103,13 @@ Real longest_cloth_step(const World& world) {
   return longest;
 }
 
-void advance_cloths(World& world, Real dt, bool with_liquid, StepScratch& scratch, StepReport& report) {
+void advance_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report) {
   if (!any_soft_sheet(world)) return;
   const auto start = std::chrono::steady_clock::now();
   const std::vector<ClothSolid> solids = solids_of(world);
   each_sheet(world, scratch, [&](SoftSheet& soft, SoftSheetScratch& own) {
     report.cloth_moved = report.cloth_moved || soft.moves();
-    report.cloth_substeps += advance_sheet(soft, own, world.gravity, solids, dt, with_liquid).substeps;
+    report.cloth_substeps += advance_sheet(soft, own, world.gravity, solids, dt).substeps;
   });
   report.cloth_wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -24,7 +24,7 @@ SoftSheetScratch& sheet_of(const World& world, std::size_t textile, StepScratch&
 void add_sheet_walls(const World& world, StepScratch& scratch);
 
 // The cloths' own step of dt, before the liquid's.
-void advance_cloths(World& world, Real dt, bool with_liquid, StepScratch& scratch, StepReport& report);
+void advance_cloths(World& world, Real dt, StepScratch& scratch, StepReport& report);
 
 // After the liquid's step of the same dt (none when nothing moves): what it gave the sheets, then its particles against
 // them. With `report.liquid_moved` the particles have just moved from scratch.liquid.fields' positions to their own: those

@@ -37,7 +37,6 @@ void visit_soft_sheet(Visitor& v, AnySheet& soft, const std::string& group) {
   v.value("load_moment", soft.load.moment);
   v.value("load_at_rest_force", soft.load_at_rest.force);
   v.value("load_at_rest_moment", soft.load_at_rest.moment);
-  v.array("expected", soft.expected);
   v.value("calm_s", soft.calm_s);
   v.value("mass_at_rest", soft.mass_at_rest);
   v.value("at_rest", soft.at_rest);

@@ -428,7 +428,7 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     max_step = std::min(max_step, longest_cloth_step(world));
     if (any_soft_sheet(world)) {  // cloth and liquid make the same step
       max_step = std::min(max_step, liquid_step_bound(world.liquid, world.liquid_params, world.gravity).step_s);
-      if (max_step > 0) advance_cloths(world, max_step, true, scratch, report);
+      if (max_step > 0) advance_cloths(world, max_step, scratch, report);
     }
     move_liquid(world, max_step, scratch, report);
     meet_cloths(world, report.step_s, scratch, report);
@@ -446,7 +446,7 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     report.step_s = world.textiles.empty() ? allowed : std::min(allowed, textile_interval(world, false));
     report.step_bound = report.step_s < allowed ? "wetting" : allowed < longest ? "drop" : "until";
     if (longest_cloth_step(world) < report.step_s) report.step_s = longest_cloth_step(world), report.step_bound = "cloth";
-    advance_cloths(world, report.step_s, false, scratch, report);
+    advance_cloths(world, report.step_s, scratch, report);
     meet_cloths(world, report.step_s, scratch, report);
     pace.since_wetting = report.step_s + waiting;
     if (!world.textiles.empty() && (!any_network_cloth_moves(world) || pace.since_wetting >= interval_with_moving_cloth))
