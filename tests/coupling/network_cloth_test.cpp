@@ -29,7 +29,10 @@ struct Wet {
     cloth = make_network_cloth(std::move(soft), n, model, {}, {});
     find_held(cloth.soft, held);
   }
-  void weigh_it() { weigh(cloth, held, fabric.network, model, contents, exchange); }
+  void weigh_it() {
+    WeighScratch scratch;
+    weigh(cloth, held, fabric.network, model, contents, exchange, {}, scratch);
+  }
   Real carried() const {
     const auto& kg = cloth.soft.sheet.added_mass;
     return std::accumulate(kg.begin(), kg.end(), Real{0});

@@ -131,11 +131,7 @@ TEST(LiveChange, SoftClothWithLiquidInItGoesOnWithOtherWindStiffnessAndSwitches)
                                      "textiles[0].sheet.soft.cloth.hand.stretch_weft=2000 N/m",
                                      "liquid.droppers[0].volume=3 uL"};
     if (cells) changes.push_back("textiles[0].wetting.cells.absorb=false");
-    // While liquid touches it a sheet has a force for each node, else none.
-    SoftSheet& soft = cells ? r.world.cell_cloths[0].soft : r.world.textiles[0].cloth->soft;
-    soft.expected.assign(soft.sheet.size(), Vec3{1e-6, 0, 0});
     apply_change(r.scene, r.world, library(), changes);
-    EXPECT_EQ(soft_sheet(r.world).expected.size(), soft_sheet(r.world).sheet.size());
     const MassBalance after = mass_balance(r.world);
     EXPECT_EQ(after.cell, before.cell);
     EXPECT_EQ(after.yarn, before.yarn);

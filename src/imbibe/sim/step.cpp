@@ -295,7 +295,7 @@ WettingReport advance_network(World& world, std::size_t index, Real dt, StepScra
     bent = scratch.embeddings[index].gravity();
   }
   TextileScratch& own = scratch.textiles[index];
-  if (own.model != textile.model) own = {textile.model, {}};
+  if (own.model != textile.model) own = {textile.model, {}, {}};
   WettingReport wetting = step_wetting(*textile.model, textile.contents, scratch.supplies, scratch.taken_kg, world.air,
                                        gravity, dt, own.wetting, textile.cloth ? &bent : nullptr);
   if (!wetting.converged)
