@@ -88,9 +88,8 @@ struct Carry {
     const void* old = find(name);
     if (!old) return;
     const auto& values = *static_cast<const std::vector<T>*>(old);
-    // As many as there happen to be: particles, the parcels of a cloth of cells, and the forces that a sheet expects (none
-    // while no liquid touches it).
-    const bool any_number = path == "liquid/" || std::string_view(name).starts_with("parcel_") || std::string_view(name) == "expected";
+    // As many as there happen to be: particles, and the parcels of a cloth of cells.
+    const bool any_number = path == "liquid/" || std::string_view(name).starts_with("parcel_");
     if (!any_number && values.size() != x.size()) misfits.push_back(path + name);
     x = values;
   }
