@@ -118,6 +118,16 @@ test('keys: space pauses and the clock holds, a point makes one step, R begins a
   assert.equal(await value(page, 'time_s'), 0);
 });
 
+test('a speed limit holds the simulation back', async () => {
+  await begin();
+  await ask(page, { type: 'speed', limit: 0.01 });
+  const begun = performance.now();
+  await ask(page, { type: 'run', swatch: 0 });
+  await reaches(page, 'time_s', 0.01);  // a second at this speed; some 0.1 s without limit
+  assert.ok(performance.now() - begun > 900);
+  await ask(page, { type: 'speed', limit: 0 });
+});
+
 test('every parameter of the panel comes from the description, with its unit and range', async () => {
   await begin();
   const seen = await page.evaluate(() => [...document.querySelectorAll('[data-path]')].map((e) => [e.dataset.path, e.title]));
@@ -280,6 +290,16 @@ test('a bad scene shows line and column, and a scene from the page may not name 
   assert.ok(problems.length >= 2, 'all problems at once');
   const evil = smallText.replace('    size:', '    weave: /etc/secret.wif\n    size:');
   await refused(page, () => page.evaluate((t) => window.imbibe.openText('evil.yaml', t), evil), /may not name files/);
+});
+
+test('a scene file dropped on the page is begun', async () => {
+  await begin();
+  await page.evaluate((scene) => {
+    const data = new DataTransfer();
+    data.items.add(new File([scene], 'dropped.yaml'));
+    document.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, smallText.replace(/^title: .*$/m, 'title: from a file'));
+  await until(page, () => document.querySelector('#title').textContent === 'from a file');
 });
 
 test('a scene of the gallery is begun from its dialog', async () => {
