@@ -30,7 +30,7 @@ TEST(GradientCorrection, sees_a_shear_as_free_of_compression_however_the_particl
   Real worst[2] = {0, 0};
   for (const bool corrected : {false, true}) {
     Block b(10, 10, 0.2, false);
-    if (corrected) correct_gradients(b.f);
+    if (corrected) correct_gradients(b.f, PressureParams{}.spray_filling);
     const Real rate = 10;
     for (std::size_t i = 0; i < b.f.count; ++i) {
       const Float4& x = b.f.position[i];
@@ -51,7 +51,7 @@ TEST(GradientCorrection, sees_a_shear_as_free_of_compression_however_the_particl
 TEST(GradientCorrection, leaves_a_lattice_at_rest_as_it_is_at_a_wall_and_under_air_too) {
   // The block's rim aside, a lattice is evenly spread: what differs from one are its sums, which are no integrals.
   Block b(12, 6, 0, true);
-  correct_gradients(b.f);
+  correct_gradients(b.f, PressureParams{}.spray_filling);
   Real inside = 0, outside = 0;
   const float reach = b.f.neighbours.kernel.support, top = 6 * std::cbrt(2.0f) * spacing;
   b.each_away_from_sides(12, [&](std::size_t i) {
@@ -66,7 +66,7 @@ TEST(GradientCorrection, leaves_a_lattice_at_rest_as_it_is_at_a_wall_and_under_a
 
 TEST(GradientCorrection, keeps_momentum_and_angular_momentum_of_a_free_body) {
   Block b(7, 7, 0.2, false);
-  correct_gradients(b.f);
+  correct_gradients(b.f, PressureParams{}.spray_filling);
   const auto spin = [&] {
     Vec3 sum{};
     for (std::size_t i = 0; i < b.f.count; ++i) {
@@ -92,7 +92,7 @@ TEST(GradientCorrection, keeps_momentum_and_angular_momentum_of_a_free_body) {
 
 TEST(GradientCorrection, is_none_for_spray_and_bounded_everywhere) {
   Block b(5, 5, 0.3, false);
-  correct_gradients(b.f);
+  correct_gradients(b.f, PressureParams{}.spray_filling);
   for (std::size_t i = 0; i < b.f.count; ++i) {
     if (b.f.filling[i] < 0.4f) {
       EXPECT_EQ(distance_from_unit(b.f, i), 0);

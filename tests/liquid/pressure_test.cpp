@@ -25,7 +25,7 @@ std::vector<float> random_field(std::size_t count, std::uint64_t seed) {
 TEST(Pressure, operator_is_symmetric_and_positive_next_to_a_wall_too) {
   for (const bool corrected : {false, true}) {
     Block b(6, 5, 0.15, true);
-    if (corrected) correct_gradients(b.f);
+    if (corrected) correct_gradients(b.f, PressureParams{}.spray_filling);
     const std::vector<float> p = random_field(b.f.count, 1), q = random_field(b.f.count, 2);
     Real pq = 0, qp = 0, pp = 0, size = 0;
     apply_pressure(b, p);
@@ -45,7 +45,7 @@ TEST(Pressure, operator_is_symmetric_and_positive_next_to_a_wall_too) {
 
 TEST(Pressure, that_is_uniform_does_not_accelerate_liquid_at_a_wall) {
   Block b(10, 6, 0, true);
-  correct_gradients(b.f);
+  correct_gradients(b.f, PressureParams{}.spray_filling);
   std::vector<float> k(b.f.count);
   for (std::size_t i = 0; i < b.f.count; ++i) k[i] = 1 / (1 - b.f.boundary.wall[i].w);
   apply_pressure(b, k);
@@ -65,7 +65,7 @@ TEST(Pressure, that_is_uniform_does_not_accelerate_liquid_at_a_wall) {
 
 TEST(Pressure, that_rises_along_a_wall_accelerates_the_layers_there_as_much_as_elsewhere) {
   Block b(14, 6, 0, true);
-  correct_gradients(b.f);
+  correct_gradients(b.f, PressureParams{}.spray_filling);
   std::vector<float> k(b.f.count);
   for (std::size_t i = 0; i < b.f.count; ++i) k[i] = b.f.position[i].x / (1 - b.f.boundary.wall[i].w);
   apply_pressure(b, k);
@@ -81,7 +81,7 @@ TEST(Pressure, that_rises_along_a_wall_accelerates_the_layers_there_as_much_as_e
 
 TEST(Pressure, leaves_a_velocity_without_compression_and_keeps_the_momentum_of_a_free_body) {
   Block b(8, 8, 0.1, false);
-  correct_gradients(b.f);
+  correct_gradients(b.f, PressureParams{}.spray_filling);
   const Vec3 before = b.momentum();
   const Real energy = b.energy();
   PressureParams params;
@@ -97,7 +97,7 @@ TEST(Pressure, leaves_a_velocity_without_compression_and_keeps_the_momentum_of_a
   std::fill(b.liquid.particles.warm_pressure.begin(), b.liquid.particles.warm_pressure.end(), 0.0f);
   std::vector<Float4> velocity = b.f.velocity;
   compute_density(b.f);
-  correct_gradients(b.f);
+  correct_gradients(b.f, PressureParams{}.spray_filling);
   const PressureReport again = project_velocity(b.f, params, dt, 0, b.liquid.particles.warm_pressure);
   EXPECT_EQ(again.iterations, 1);
   Real change = 0;

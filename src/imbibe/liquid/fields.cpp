@@ -21,10 +21,6 @@ void begin_fields(LiquidFields& f, const Liquid& liquid) {
     for (std::size_t i = f.count; i < padded; ++i) (*array)[i] = 0;
   }
   f.corrected = false;
-  for (auto* array : {&f.correction, &f.stress}) {
-    array->resize(3 * padded);
-    for (std::size_t i = 3 * f.count; i < 3 * padded; ++i) (*array)[i] = {};
-  }
   f.surface.assign(padded, 0);
   pad_positions(f.position, f.count);
   pad_positions(f.position_swap, f.count);

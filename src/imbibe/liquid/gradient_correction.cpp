@@ -86,14 +86,20 @@ Matrix correction(const LiquidFields& f, std::size_t i, const Moments& m, std::s
 
 }  // namespace
 
-void correct_gradients(LiquidFields& f) {
+void correct_gradients(LiquidFields& f, Real spray_filling) {
   f.corrected = true;
+  const std::size_t padded = f.position.size();
+  for (auto* array : {&f.correction, &f.stress}) {
+    array->resize(3 * padded);
+    for (std::size_t i = 3 * f.count; i < 3 * padded; ++i) (*array)[i] = {};
+  }
+  const auto spray = static_cast<float>(spray_filling);
   const auto stress = static_cast<float>(
       lattice_stress(static_cast<Real>(f.neighbours.kernel.support) / static_cast<Real>(f.spacing)));
   for_each_slice(f.neighbours, [&](const Slice& s) {
     const Moments m = second_moments(f, s);
     for (std::size_t i = s.first; i < std::min(s.first + lanes, f.count); ++i) {
-      const Matrix c = f.filling[i] < 0.4f ? Matrix{} : correction(f, i, m, i - s.first, stress);
+      const Matrix c = f.filling[i] < spray ? Matrix{} : correction(f, i, m, i - s.first, stress);
       Float4* row = &f.correction[3 * i];
       row[0] = {1 + c.row[0].x, c.row[0].y, c.row[0].z, 0};
       row[1] = {c.row[1].x, 1 + c.row[1].y, c.row[1].z, 0};

@@ -25,7 +25,7 @@
 
 namespace imbibe {
 
-// Fills f.correction and sets f.corrected.
-void correct_gradients(LiquidFields& f);
+// Fills f.correction and sets f.corrected; L = I for spray, whose kernel is filled less than spray_filling (pressure.h).
+void correct_gradients(LiquidFields& f, Real spray_filling);
 
 }  // namespace imbibe

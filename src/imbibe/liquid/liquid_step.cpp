@@ -199,7 +199,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
   build_lists(f.neighbours, f.position, f.boundary.side);
   report.times.lists = timer.lap();
   compute_density(f);
-  if (params.pressure.corrected_gradients && !tension) correct_gradients(f);
+  if (params.pressure.corrected_gradients && !tension) correct_gradients(f, params.pressure.spray_filling);
   report.times.density = timer.lap();
 
   ViscosityAt viscosity{kind.viscosity, kind.viscosity};
