@@ -105,7 +105,8 @@ void compute_density(LiquidFields& f) {
   const Kernel kernel = f.neighbours.kernel;
   const float volume = f.volume;
   const float tiny = 1e-6f * kernel.inverse * kernel.inverse;  // a particle alone
-  const float own = volume * kernel.value(0) - static_cast<float>(lattice_excess(static_cast<Real>(kernel.support) / static_cast<Real>(f.spacing)));
+  const Real ratio = static_cast<Real>(kernel.support) / static_cast<Real>(f.spacing);
+  const float own = volume * kernel.value(0) - static_cast<float>(lattice_excess(ratio) + disorder_excess);
   parallel_tiles(f.count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; i += lanes) {
       const Slice s = f.neighbours.slice(i);
