@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "imbibe/core/quantity.h"
+#include "imbibe/wetting/conditioning.h"
 
 namespace imbibe::live {
 namespace {
@@ -93,19 +94,25 @@ class ControlList {
 };
 
 // What stands in for keys that a scene leaves to the materials, in SI: every optional number of a scene whose meaning is
-// "in place of the material's own".
-std::vector<std::pair<std::string, Real>> stand_ins(const World& world) {
-  std::vector<std::pair<std::string, Real>> out{{"liquid.kind.density", world.liquid.kind.density},
-                                                {"liquid.kind.viscosity", world.liquid.kind.viscosity},
-                                                {"liquid.kind.surface_tension", world.liquid.kind.surface_tension}};
-  for (std::size_t i = 0; i < world.textiles.size(); ++i) {
-    const auto& fibres = world.textiles[i].model->fibres;
-    if (fibres.empty()) continue;
-    out.emplace_back(fmt::format("textiles[{}].contact_angle", i), fibres.front().advancing_angle);
-    out.emplace_back(fmt::format("textiles[{}].receding_angle", i), fibres.front().receding_angle);
+// "in place of the material's own". `most`: what the material allows, where that is less than the description does.
+struct StandIn {
+  std::string path;
+  Real value = 0, most = unlimited;
+};
+std::vector<StandIn> stand_ins(const Scene& scene, const World& world) {
+  std::vector<StandIn> out{{"liquid.kind.density", world.liquid.kind.density},
+                           {"liquid.kind.viscosity", world.liquid.kind.viscosity},
+                           {"liquid.kind.surface_tension", world.liquid.kind.surface_tension}};
+  for (std::size_t i = 0, network = 0; i < scene.textiles.size() && network < world.textiles.size(); ++i) {
+    if (scene.textiles[i].wetting.is_cells()) continue;
+    const WettingModel& model = *world.textiles[network++].model;
+    if (model.fibres.empty()) continue;
+    out.push_back({fmt::format("textiles[{}].contact_angle", i), model.fibres.front().advancing_angle});
+    out.push_back({fmt::format("textiles[{}].receding_angle", i), model.fibres.front().receding_angle});
+    out.push_back({fmt::format("textiles[{}].regain", i), regain_in_balance(model, world.air.humidity), regain_in_balance(model, 1)});
   }
   for (std::size_t i = 0; i < world.solids.size(); ++i)
-    out.emplace_back(fmt::format("solids[{}].receding_angle", i), world.solids[i].material.contact_angle);
+    out.push_back({fmt::format("solids[{}].receding_angle", i), world.solids[i].material.contact_angle});
   return out;
 }
 
@@ -124,7 +131,7 @@ std::vector<Control> controls_of(const Scene& scene) {
 }
 
 std::string controls_json(const Scene& scene, const World& world, const Library& library) {
-  const auto own = stand_ins(world);
+  const auto own = stand_ins(scene, world);
   std::vector<std::string> fibres;
   for (const auto& fibre : library.fibres.records) fibres.push_back(fibre.fibre.name);
   Json rows = Json::array();
@@ -146,8 +153,11 @@ std::string controls_json(const Scene& scene, const World& world, const Library&
     if (!c.row.choices.empty()) row["choices"] = c.row.choices;
     if (c.row.path.ends_with(".fibre")) row["choices"] = fibres;
     if (!c.numbers.empty()) row["numbers"] = c.numbers;
-    for (const auto& [path, si] : own)
-      if (path == c.row.path && c.numbers.empty()) row["stands_for"] = in_shown_unit(si, c.row);
+    for (const StandIn& material : own) {
+      if (material.path != c.row.path) continue;
+      if (c.numbers.empty()) row["stands_for"] = in_shown_unit(material.value, c.row);
+      if (material.most < unlimited) row["high"] = std::floor(1e3 * in_shown_unit(material.most, c.row)) / 1e3;
+    }
     rows.push_back(std::move(row));
   }
   return rows.dump(-1, ' ', false, Json::error_handler_t::replace);

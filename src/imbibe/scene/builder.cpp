@@ -98,6 +98,11 @@ void add_wetting(const Scene& scene, std::size_t i, std::size_t index, const Run
   const std::string key = fmt::format("textiles[{}]", i);
   try {
     set_wetting(spec, world, textile, running_textile(running, i));
+    try {
+      set_contents(spec, world.air, textile, running_textile(running, i));
+    } catch (const InputError& error) {
+      return add_at(scene, error, problems, key);
+    }
     for (std::size_t r = 0; r < spec.reservoirs.size(); ++r) {
       try {
         textile.reservoirs.push_back(make_reservoir(spec.reservoirs[r], textile.fabric->network));

@@ -139,6 +139,7 @@ void check_cloth_keys(const Scene& scene, std::size_t i, std::vector<Problem>& p
   };
   if (spec.wetting.is_cells() && !spec.fabric.areal_mass && !spec.sheet.soft)
     refuse("", "a cloth of cells needs its areal_mass (or a soft sheet with a preset)");
+  if (spec.wetting.is_cells() && spec.regain) refuse(".regain", "a cloth of cells knows no fibres that could be conditioned");
   if (!spec.sheet.soft) return;
   const SoftSheetSpec& soft = *spec.sheet.soft;
   for (std::size_t k = 0; k < soft.pins.size(); ++k) {

@@ -14,6 +14,7 @@
 #include "imbibe/scene/builder.h"
 #include "imbibe/scene/placement_checks.h"
 #include "imbibe/sim/state_fields.h"
+#include "imbibe/wetting/conditioning.h"
 
 namespace imbibe {
 namespace {
@@ -138,6 +139,18 @@ void expel(Textile& textile) {
   }
 }
 
+// Fibres without liquid are conditioned to a regain that is given anew; the air gives or takes the water.
+void condition(const Scene& before, const Scene& after, World& next) {
+  for (std::size_t i = 0, index = 0; i < after.textiles.size(); ++i) {
+    const TextileSpec& spec = after.textiles[i];
+    if (spec.wetting.is_cells()) continue;
+    Textile& textile = next.textiles[index++];
+    if (!spec.regain || spec.regain == before.textiles.at(i).regain) continue;
+    next.ledger.evaporated_kg -=
+        condition_dry_fibres(*textile.model, textile.contents, humidity_in_balance(*textile.model, *spec.regain));
+  }
+}
+
 World carried_world(const Scene& before, const World& running, const Scene& after, const Library& library) {
   const RunningWorld from{before, running, [&](World& next) { carry_sources(before, running, after, next); }};
   World next = build_world(after, library, &from);
@@ -149,6 +162,7 @@ World carried_world(const Scene& before, const World& running, const Scene& afte
     throw InputError(fmt::format("this does not fit the running state ({}): it takes effect at a restart",
                                  carry.misfits.empty() ? "number of textiles" : carry.misfits.front()));
   for (Textile& textile : next.textiles) expel(textile);
+  condition(before, after, next);
   // Whatever rested may move now, and the next textile steps are short again.
   const auto wake = [](SoftSheet& soft) { soft.at_rest = false, soft.calm_s = 0; };
   for (CellCloth& cloth : next.cell_cloths) wake(cloth.soft);

@@ -5,7 +5,8 @@
 // whatever the steps made (sim/state_fields.h) is kept, and so every liquid's mass. Fabrics, models and meshes that the
 // change leaves alone are shared with the running world (textile_builder.h): equal to the bit, and no stall. What a material of new fibres cannot
 // hold is expelled: water above the new fibres' greatest regain, and liquid in yarns that no longer wet, go to the
-// yarn's faces, where they become drops.
+// yarn's faces, where they become drops. A changed `regain` conditions the fibres that touch no liquid (conditioning.h); the
+// water of it is booked with what went to the air.
 // A change that would alter the size or meaning of the state (counts, resolution, sorption shells) is refused: it takes
 // effect at a restart.
 //

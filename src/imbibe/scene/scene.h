@@ -245,6 +245,7 @@ struct TextileSpec {
   FabricSpec fabric;
   std::optional<Real> contact_angle;   // rad, advancing, in place of every fibre's
   std::optional<Real> receding_angle;  // rad
+  std::optional<Real> regain;          // kg/kg, that its fibres are conditioned to
   SheetSpec sheet;
   WettingSpec wetting;
   ContactParams contact;
@@ -266,6 +267,10 @@ void describe(V& v, TextileSpec& p) {
            .help = "advancing contact angle of the liquid on every fibre; default: each fibre's own, which is water's"});
   v.value("receding_angle", p.receding_angle,
           {.unit = "rad", .shown = "deg", .min = 0, .max = pi, .help = "receding contact angle on every fibre"});
+  v.value("regain", p.regain,
+          {.unit = "1", .shown = "%", .min = 0, .max = 1,
+           .help = "water in its fibres per dry mass where no liquid touches them: conditioned to it at the start, and again "
+                   "whenever it is changed (water from or to the air); default: in balance with start.humidity or the air"});
   v.group("sheet", p.sheet, "how the cloth is held");
   v.group("wetting", p.wetting, "how it takes liquid up");
   v.group("contact", p.contact, "how particles that hit its yarns bounce");

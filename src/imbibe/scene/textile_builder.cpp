@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "imbibe/scene/describe_writer.h"
+#include "imbibe/wetting/conditioning.h"
 
 namespace imbibe {
 namespace {
@@ -46,9 +47,10 @@ bool same_contents(const WettingModel& a, const WettingModel& b) {
          a.params.shells == b.params.shells && a.params.hysteresis == b.params.hysteresis;
 }
 
-// What `start` says, in place of conditioned fibres without liquid between them.
-Contents starting_contents(const StartSpec& start, const YarnNetwork& network, const WettingModel& model, Air air) {
-  if (start.humidity) air.humidity = *start.humidity;
+// What `regain` and `start` say, in place of conditioned fibres without liquid between them.
+Contents starting_contents(const TextileSpec& spec, const YarnNetwork& network, const WettingModel& model, Air air) {
+  const StartSpec& start = spec.start;
+  air.humidity = spec.regain ? humidity_in_balance(model, *spec.regain) : start.humidity.value_or(air.humidity);
   Contents contents = conditioned_contents(model, air);
   for (std::size_t node = 0; node < network.nodes(); ++node) {
     Real held = network.is_pore(node) ? start.pores : start.yarns;
@@ -101,14 +103,18 @@ void set_wetting(const TextileSpec& spec, const World& world, Textile& textile, 
                         write_described(spec.wetting.network) == write_described(running.spec->wetting.network);
   textile.model = all_same ? old->model
                            : std::make_shared<const WettingModel>(build_wetting_model(network, spec.wetting.network, liquid));
-  textile.contents = old && same_contents(*old->model, *textile.model)
-                         ? old->contents
-                         : starting_contents(spec.start, network, *textile.model, world.air);
   const Real spacing = world.liquid.particle_mass > 0 ? world.liquid.spacing() : 0;
   textile.faces = old && old->fabric == textile.fabric ? old->faces : std::make_shared<const FaceMap>(build_face_map(network, spacing));
   textile.yarn_boxes = same_network ? old->yarn_boxes : std::make_shared<const YarnContactIndex>(build_contact_index(network));
   textile.contact = spec.contact;
   textile.exchange.waiting_kg.assign(network.nodes(), 0);
+}
+
+void set_contents(const TextileSpec& spec, const Air& air, Textile& textile, const RunningTextile& running) {
+  const Textile* old = running.textile;
+  const bool goes_on = old && same_contents(*old->model, *textile.model);
+  if (goes_on && spec.regain) humidity_in_balance(*textile.model, *spec.regain);  // throws what the start would
+  textile.contents = goes_on ? old->contents : starting_contents(spec, textile.fabric->network, *textile.model, air);
 }
 
 }  // namespace imbibe

@@ -26,7 +26,10 @@ RunningTextile running_textile(const RunningWorld* running, std::size_t i);
 Textile woven_textile(const TextileSpec& spec, const FibreLibrary& fibres, const std::string& key,
                       const RunningTextile& running);
 
-// Model, contents, contact and indices, in the air and for the liquid of the world. Throws InputError.
+// Model, contact and indices, for the liquid of the world. Throws InputError with keys of the network's.
 void set_wetting(const TextileSpec& spec, const World& world, Textile& textile, const RunningTextile& running);
+
+// What it holds, in the air of the world. Throws InputError with keys of the textile's.
+void set_contents(const TextileSpec& spec, const Air& air, Textile& textile, const RunningTextile& running);
 
 }  // namespace imbibe
