@@ -97,6 +97,13 @@ TEST(DescribeReader, ARejectedValueLeavesTheFieldAlone) {
   EXPECT_FALSE(s.angle.has_value());
 }
 
+TEST(DescribeReader, AnEmptyTextIsRefusedWhereTheDefaultIsNone) {
+  ReadLog log;
+  EXPECT_EQ(read("word: \"\"\nfile: \"\"\n", log).word, "none");
+  ASSERT_EQ(log.problems.size(), 1u);
+  EXPECT_NE(log.problems[0].message.find("'none' where the key is left out"), std::string::npos) << log.problems[0].message;
+}
+
 TEST(DescribeReader, AScalarStandsForAMapWithAShortForm) {
   ReadLog log;
   EXPECT_EQ(read("inner: oil\n", log).inner.kind, "oil");

@@ -89,6 +89,7 @@ World filled_world(std::size_t particles = 1000) {
   world.textiles[0].contents.shell_regain = shells;
   world.textiles[1].contents.reached_saturation = reached;
   world.liquid.particle_mass = mass;
+  world.sources[0].carried = 1e-13;  // m3, less than a particle
   return world;
 }
 
@@ -242,6 +243,16 @@ TEST(Checkpoint, of_another_scene_is_refused_with_every_difference) {
   other = built_world();
   other.textiles.pop_back();
   EXPECT_THROW(read_checkpoint(folder / "c.h5", other), InputError);
+}
+
+TEST(Checkpoint, of_a_source_that_owes_what_no_rounding_leaves_is_refused) {
+  const TemporaryFolder folder;
+  for (const Real carried : {1e255, -1.0, std::nan("")}) {
+    World world = filled_world(), read = built_world();
+    world.sources[0].carried = carried;
+    write_checkpoint(folder / "c.h5", world);
+    EXPECT_THROW(read_checkpoint(folder / "c.h5", read), InputError) << carried;
+  }
 }
 
 TEST(Checkpoint, that_does_not_fit_on_the_disk_leaves_the_last_one_intact) {

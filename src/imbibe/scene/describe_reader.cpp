@@ -158,6 +158,9 @@ bool read_scalar(const DataNode& node, const std::string& path, bool& out, const
 bool read_scalar(const DataNode& node, const std::string& path, std::string& out, const ParameterInfo& info,
                  ReadLog& log) {
   if (!is_scalar(node, path, "a text", log)) return false;
+  if (node.text.empty() && !out.empty()) {
+    return fail(node, path, fmt::format("is empty; wants a text ('{}' where the key is left out)", out), log);
+  }
   out = node.text;
   if (std::string_view(info.unit) == "file" && !out.empty() && node.place.file) {
     const std::filesystem::path named(out);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -272,7 +273,7 @@ std::string_view verified_image(const fs::path& path, const std::string& content
   return image;
 }
 
-// What does not fit between the state that was read and the world the scene builds.
+// What does not fit between the state that was read and the world the scene builds, or can be no state at all.
 std::vector<std::string> mismatches(const World& read, const World& built) {
   std::vector<std::string> problems;
   const auto same = [&](const std::string& what, auto stored, auto wanted) {
@@ -284,6 +285,15 @@ std::vector<std::string> mismatches(const World& read, const World& built) {
   for (const std::size_t size : {p.velocity.size(), p.id.size(), p.kind.size(), p.density.size(), p.pressure.size(),
                                  p.warm_pressure.size(), p.warm_divergence.size(), p.owed_kg.size()}) {
     if (size != p.size()) problems.push_back("particle arrays differ in length");
+  }
+  const Real particle_volume = built.liquid.particle_mass / built.liquid.kind.density;
+  for (std::size_t i = 0; i < read.sources.size(); ++i) {
+    const Source& s = read.sources[i];
+    if (s.emitted < 0) problems.push_back(fmt::format("source {} has emitted {} drops", i, s.emitted));
+    // What rounding to whole particles leaves over; a change of the density while it ran may have stretched it.
+    if (!(std::abs(s.carried) <= 2 * particle_volume)) {
+      problems.push_back(fmt::format("source {} owes {} m3, more than a particle's volume", i, s.carried));
+    }
   }
   for (std::size_t i = 0; i < read.textiles.size(); ++i) {
     const Textile &t = read.textiles[i], &b = built.textiles[i];
