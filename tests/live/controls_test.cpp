@@ -48,7 +48,7 @@ TEST(Controls, WhatOneTurnsFirstTakesEffectAtTheNextStep) {
   std::set<std::string> described;
   for (const ParameterRow& row : parameter_rows<Scene>()) described.insert(row.path);
   for (std::string path :
-       {"textiles[].contact_angle", "textiles[].warp.fibre", "textiles[].weft.fibre", "textiles[].regain", "air.humidity", "air.temperature",
+       {"textiles[].contact_angle", "textiles[].warp_contact_angle", "textiles[].weft_contact_angle", "textiles[].warp.fibre", "textiles[].weft.fibre", "textiles[].regain", "air.humidity", "air.temperature",
         "liquid.kind.surface_tension", "liquid.kind.viscosity", "textiles[].wetting.network.crossing_factor",
         "textiles[].wetting.network.evaporation", "gravity", "liquid.droppers[].volume", "liquid.droppers[].interval",
         "liquid.droppers[].centre", "liquid.pipes[].particle_rate", "textiles[].wetting.cells.absorb",

@@ -80,6 +80,30 @@ TEST(LiveChange, ContactAngleTakesEffectAndKeepsTheMass) {
   EXPECT_EQ(r.world.step, run_with({}, 10e-3).world.step);
 }
 
+TEST(LiveChange, WarpAndWeftMayHaveAnglesOfTheirOwn) {
+  for (const char* layers : {"", "    layers: [{}, {}]\n"}) {  // layers share yarn types that are alike
+    SCOPED_TRACE(layers);
+    Running r{read_scene_text(std::string(small_scene) + layers, "small",
+                              {"textiles[0].weft.density=30 /cm", "liquid.drops[0].centre=[0 mm, 0 mm, 1.5 mm]"}), {}};
+    r.world = build_world(r.scene, library());
+    run_to(r.world, 5e-3);
+    const Real own = r.world.textiles[0].model->fibres[0].advancing_angle;
+    apply_change(r.scene, r.world, library(), {"textiles[0].weft_contact_angle=110 deg"});
+    const Textile& textile = r.world.textiles[0];
+    for (std::size_t s = 0; s < textile.model->segments; ++s) {
+      const bool weft = textile.fabric->network.family_of_segment(s) == Family::weft;
+      EXPECT_NEAR(textile.model->fibres[textile.model->segment_type[s]].advancing_angle, weft ? radians(110) : own, 1e-12);
+    }
+    run_to(r.world, 20e-3);
+    Real in_weft = 0, in_warp = 0;
+    for (std::size_t s = 0; s < textile.model->segments; ++s)
+      (textile.fabric->network.family_of_segment(s) == Family::weft ? in_weft : in_warp) += r.world.textiles[0].contents.liquid_kg[s];
+    EXPECT_EQ(in_weft, 0);
+    EXPECT_GT(in_warp, 1e-8);
+    EXPECT_LT(mass_balance(r.world).error(), 1e-10);
+  }
+}
+
 TEST(LiveChange, ChangeToTheValueThatIsThereLeavesEveryBitOfTheLiquid) {
   Running r = run_with({}, 10e-3);
   World before = r.world;

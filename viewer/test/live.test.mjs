@@ -5,7 +5,7 @@ import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after as afterAll, before, test } from 'node:test';
 import { ask, command, openBrowser, openPage, root, startLive, until } from './browser.mjs';
 import { Watcher, processorSeconds } from './watcher.mjs';
 
@@ -88,7 +88,7 @@ before(async () => {
   server = await startLive(small, '--speed', '0');
   page = await openPage(browser, server.url, { width: 1100, height: 680 });
 });
-after(async () => {
+afterAll(async () => {
   await browser?.close();
   await server?.remove();
 });
@@ -349,6 +349,127 @@ test('a soft cloth moves and darkens; pipe, wind, switches and stiffness change 
   assert.match(await text(page, '#pick'), /Cell \d+ of cloth/);
 });
 
+// ---- every control that the page promises
+
+// What the simulation has made of its start `count` steps after `assign`: all its masses, lengths and counts.
+async function after(scene, assign, count = 30) {
+  await begin(page, scene);
+  if (assign.length > 0) await set(page, ...assign);
+  const { step } = await ask(page, { type: 'step', swatch: 0, steps: count });
+  await until(page, (n) => window.imbibe.swatches[0].value('steps') === n, step + count);
+  return page.evaluate(() => window.imbibe.hello.columns.filter((name) => !['speed', 'step_bound', 'converged'].includes(name))
+    .map((name) => `${name} ${window.imbibe.swatches[0].value(name)}`));
+}
+
+// In the panel, without "all"; and set by its input, checkbox or list it is taken and what follows differs.
+async function reachesTheSolver(scene, controls, count) {
+  const untouched = await after(scene, [], count);
+  assert.deepEqual(await after(scene, [], count), untouched, 'the same without a change');
+  const shown = await page.evaluate(() => [...document.querySelectorAll('[data-path]')].map((e) => e.dataset.path));
+  for (const [path, value] of Object.entries(controls)) {
+    assert.ok(shown.includes(path), `${path} is not in the panel`);
+    const now = await after(scene, [`${path}=${value}`], count);
+    assert.notDeepEqual(now, untouched, `${path}=${value} changes nothing`);
+  }
+}
+
+test('angles, fibres, regain, air, liquid, crossings, gravity, dropper and pipe are in the panel and reach the solver', async () => {
+  const scene = smallText.replace('textiles:', `  droppers: [{name: dropper, centre: [2 mm, 2 mm, 5 mm], volume: 0.3 uL, velocity: [0, 0, -2 m/s], start: 0.5 ms, interval: 1 ms, count: 100}]
+  pipes: [{name: pipe, radius: 1 mm, length: 2 mm, particle_rate: 2000, speed: 0.1 m/s, transform: {rotation: [180 deg, 0 deg, 0 deg], translation: [-9 mm, 0 mm, 3 mm]}}]
+solids: [{name: floor, shape: {kind: box, centre: [9 mm, 0 mm, -1 mm], size: [4 mm, 4 mm, 2 mm]}}]
+textiles:`).replace('    - {centre: [0 mm, 0 mm, 1.3 mm], volume: 3 uL, velocity: [0, 0, -0.1 m/s]}',
+    `    - {centre: [0 mm, 0 mm, 1.3 mm], volume: 3 uL, velocity: [0, 0, -0.1 m/s]}
+    - {centre: [9 mm, 0 mm, 0.85 mm], volume: 2 uL}`);
+  await reachesTheSolver(scene, {
+    'textiles[0].contact_angle': '70 deg', 'textiles[0].warp_contact_angle': '70 deg', 'textiles[0].weft_contact_angle': '70 deg',
+    'textiles[0].warp.fibre': 'wool', 'textiles[0].weft.fibre': 'wool', 'textiles[0].regain': '15 %',
+    'solids[0].contact_angle': '30 deg', 'air.humidity': '20 %', 'air.temperature': '35 degC',
+    'liquid.kind.surface_tension': '40 mN/m', 'liquid.kind.viscosity': '3 mPa.s',
+    'textiles[0].wetting.network.crossing_factor': '1', 'textiles[0].wetting.network.evaporation': 'false',
+    gravity: '[0 m/s2, 3 m/s2, -9 m/s2]', 'liquid.droppers[0].volume': '0.6 uL', 'liquid.droppers[0].interval': '1.5 ms',
+    'liquid.droppers[0].centre': '[2 mm, -2 mm, 2 mm]', 'liquid.pipes[0].particle_rate': '8000',
+  }, 60);
+});
+
+test('cloth stiffness, wind, absorb, leak and bounce are in the panel and reach the solver', async () => {
+  await reachesTheSolver(clothText, {
+    'textiles[0].sheet.soft.cloth.hand.stretch_weft': '40 N/m', 'textiles[0].sheet.soft.cloth.hand.shear': '1 N/m',
+    'textiles[0].sheet.soft.cloth.air.wind': '[4 m/s, 0 m/s, 0 m/s]', 'textiles[0].wetting.cells.absorb': 'false',
+  }, 60);
+  await begin(page, clothText);
+  const shown = await page.evaluate(() => [...document.querySelectorAll('[data-path]')].map((e) => e.dataset.path));
+  for (const path of ['absorb', 'leak', 'bounce']) assert.ok(shown.includes(`textiles[0].wetting.cells.${path}`), path);
+});
+
+test('absorb, leak and bounce switched off by a click in the page do what they say', async () => {
+  // A cloth that can hold little, under a pipe that gives much.
+  const scene = clothText.replace('cells: {resistance: 100}', 'cells: {resistance: 100, capacity: 20 g/m2, drop_neck: 0 mm, leak_time: 10 ms}')
+    .replace('particle_rate: 200', 'particle_rate: 2000').replace('volume: 0.2 mL', 'volume: 0.4 mL');
+  const held = async (path) => {
+    await begin(page, scene);
+    if (path) {
+      const seen = await page.evaluate(() => window.imbibe.counters.changes);
+      const box = page.locator(`[data-path="textiles[0].wetting.cells.${path}"] input[type=checkbox]`);
+      await box.scrollIntoViewIfNeeded();
+      await box.click();
+      await until(page, (n) => window.imbibe.counters.changes > n, seen);
+      assert.deepEqual(await page.evaluate(() => window.imbibe.counters.lastChange.set), [`textiles[0].wetting.cells.${path}=false`]);
+    }
+    await stepsUntil(page, 'time_s', 0.25);
+    assert.ok((await value(page, 'ledger_error')) < 1e-10);
+    return value(page, 'cell_kg');
+  };
+  const all = await held('');
+  assert.ok(all > 5e-5, `${all} kg: 72 mg fill it`);
+  assert.equal(await held('absorb'), 0, 'nothing is taken up');
+  assert.ok((await held('leak')) > 1.02 * all, 'over-full cells keep what they would have let go');
+  assert.ok((await held('bounce')) > 1.05 * all, 'full cells take what they would have thrown back');
+});
+
+test('regain is pulled with the slider: dry fibres follow at the next step, the air has the difference', async () => {
+  await begin();
+  await ask(page, { type: 'run', swatch: 0 });
+  await reaches(page, 'yarn_kg', 1e-7);
+  const { step } = await pause(page);
+  const before_ = { sorbed: await value(page, 'sorbed_kg'), evaporated: await value(page, 'evaporated_kg') };
+  const shown = await page.evaluate(() => window.imbibe.panel.value('textiles[0].regain'));
+  assert.ok(shown > 6 && shown < 9, `cotton in air of 65 %, not ${shown}`);
+  const input = page.locator('[data-path="textiles[0].regain"] input');
+  await input.fill('12');
+  await input.press('Enter');
+  await until(page, () => window.imbibe.counters.lastChange?.set[0]?.startsWith('textiles[0].regain=12'));
+  assert.equal(await page.evaluate(() => window.imbibe.counters.lastChange.step), step);
+  await steps(page, 1);
+  const gained = (await value(page, 'sorbed_kg')) - before_.sorbed, given = before_.evaporated - (await value(page, 'evaporated_kg'));
+  assert.ok(gained > 0.2 * before_.sorbed, `${gained} kg of ${before_.sorbed}`);
+  assert.ok(Math.abs(gained - given) < 0.02 * gained, `${gained} kg into the fibres, ${given} kg from the air`);
+  assert.ok((await value(page, 'ledger_error')) < 1e-10);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('t');
+  await page.keyboard.press('i');
+  await page.mouse.click(...await pixel(page, [-3.9e-3, -3.9e-3, 0.3e-3]));
+  await page.waitForSelector('#pick:not([hidden])');
+  const pick = await text(page, '#pick');
+  if (/regain/.test(pick)) assert.match(pick, /regain1[12]\.\d/);
+  await page.keyboard.press('Escape');
+});
+
+test('help by key and button tells the keys, and closes by Esc and by its button', async () => {
+  await begin();
+  await page.keyboard.press('?');
+  assert.ok(await page.isVisible('#dialog'));
+  const told = await text(page, '#dialog');
+  for (const what of [/Keys and mouse/, /run or pause/, /one step/, /reset/, /drops a drop/, /section/, /picture/, /compare/, /light or dark/]) assert.match(told, what);
+  await page.keyboard.press(' ');
+  assert.equal((await page.evaluate(() => window.imbibe.swatches[0].flags)) & 1, 0, 'keys go to the dialog meanwhile');
+  await page.keyboard.press('Escape');
+  if (await page.isVisible('#dialog')) await page.keyboard.press('Escape');
+  assert.equal(await page.isVisible('#dialog'), false);
+  await page.click('#help');
+  await page.click('#dialog footer button');
+  assert.equal(await page.isVisible('#dialog'), false);
+});
+
 test('the yarns of a network on a soft sheet move, and its pores are picked where they are', async () => {
   await begin();
   const generation = await page.evaluate(() => window.imbibe.swatches[0].generation);
@@ -446,6 +567,7 @@ test('what was done live is recorded, and runs again offline to the same bits', 
   await set(page, 'textiles[0].contact_angle=75 deg', 'air.humidity=30 %');
   await ask(page, { type: 'drop', swatch: 0, at: [-3e-3, 1e-3, 0.3e-3], volume: 0.6e-9, speed: 0.1 });
   await reaches(page, 'time_s', 0.02);
+  await set(page, 'textiles[0].regain=13 %', 'textiles[0].weft_contact_angle=60 deg');
   await set(page, 'gravity=[2 m/s2, 0 m/s2, -9.81 m/s2]', 'liquid.kind.surface_tension=40 mN/m');
   await reaches(page, 'time_s', 0.03);
   await server.stop();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -93,6 +94,13 @@ class ControlList {
   std::vector<Control>& out_;
 };
 
+// Of the first yarn of the family.
+Real angle_of(const Textile& textile, Family family) {
+  const YarnNetwork& network = textile.fabric->network;
+  const auto yarn = std::find(network.yarn_family.begin(), network.yarn_family.end(), family) - network.yarn_family.begin();
+  return network.yarn_types[network.yarn_type[static_cast<std::size_t>(yarn)]].fibre.advancing_angle;
+}
+
 // What stands in for keys that a scene leaves to the materials, in SI: every optional number of a scene whose meaning is
 // "in place of the material's own". `most`: what the material allows, where that is less than the description does.
 struct StandIn {
@@ -108,6 +116,8 @@ std::vector<StandIn> stand_ins(const Scene& scene, const World& world) {
     const WettingModel& model = *world.textiles[network++].model;
     if (model.fibres.empty()) continue;
     out.push_back({fmt::format("textiles[{}].contact_angle", i), model.fibres.front().advancing_angle});
+    out.push_back({fmt::format("textiles[{}].warp_contact_angle", i), angle_of(world.textiles[network - 1], Family::warp)});
+    out.push_back({fmt::format("textiles[{}].weft_contact_angle", i), angle_of(world.textiles[network - 1], Family::weft)});
     out.push_back({fmt::format("textiles[{}].receding_angle", i), model.fibres.front().receding_angle});
     out.push_back({fmt::format("textiles[{}].regain", i), regain_in_balance(model, world.air.humidity), regain_in_balance(model, 1)});
   }

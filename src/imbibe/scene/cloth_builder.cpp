@@ -140,6 +140,8 @@ void check_cloth_keys(const Scene& scene, std::size_t i, std::vector<Problem>& p
   if (spec.wetting.is_cells() && !spec.fabric.areal_mass && !spec.sheet.soft)
     refuse("", "a cloth of cells needs its areal_mass (or a soft sheet with a preset)");
   if (spec.wetting.is_cells() && spec.regain) refuse(".regain", "a cloth of cells knows no fibres that could be conditioned");
+  if (spec.wetting.is_cells() && spec.warp_contact_angle) refuse(".warp_contact_angle", "a cloth of cells has no warp: contact_angle");
+  if (spec.wetting.is_cells() && spec.weft_contact_angle) refuse(".weft_contact_angle", "a cloth of cells has no weft: contact_angle");
   if (!spec.sheet.soft) return;
   const SoftSheetSpec& soft = *spec.sheet.soft;
   for (std::size_t k = 0; k < soft.pins.size(); ++k) {

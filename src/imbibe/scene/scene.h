@@ -244,6 +244,7 @@ struct TextileSpec {
   Vec3 warp_direction{0, 1, 0};        // any length, square to the weft; the face is weft x warp
   FabricSpec fabric;
   std::optional<Real> contact_angle;   // rad, advancing, in place of every fibre's
+  std::optional<Real> warp_contact_angle, weft_contact_angle;  // rad, advancing, in place of contact_angle
   std::optional<Real> receding_angle;  // rad
   std::optional<Real> regain;          // kg/kg, that its fibres are conditioned to
   SheetSpec sheet;
@@ -265,8 +266,15 @@ void describe(V& v, TextileSpec& p) {
   v.value("contact_angle", p.contact_angle,
           {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
            .help = "advancing contact angle of the liquid on every fibre; default: each fibre's own, which is water's"});
+  v.value("warp_contact_angle", p.warp_contact_angle,
+          {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
+           .help = "advancing contact angle on the fibres of the warp alone; default: contact_angle"});
+  v.value("weft_contact_angle", p.weft_contact_angle,
+          {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
+           .help = "advancing contact angle on the fibres of the weft alone; default: contact_angle"});
   v.value("receding_angle", p.receding_angle,
-          {.unit = "rad", .shown = "deg", .min = 0, .max = pi, .help = "receding contact angle on every fibre"});
+          {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
+           .help = "receding contact angle on every fibre; never above its advancing one"});
   v.value("regain", p.regain,
           {.unit = "1", .shown = "%", .min = 0, .max = 1,
            .help = "water in its fibres per dry mass where no liquid touches them: conditioned to it at the start, and again "

@@ -17,15 +17,40 @@ Placement placement_of(const TextileSpec& spec) {
   return p;
 }
 
-// A textile's own contact angle replaces that of all its fibres, so that every part that asks a fibre sees it.
+// A yarn type that warp and weft share becomes one for each, so that they can have angles of their own.
+void part_families(YarnNetwork& network) {
+  const std::size_t types = network.yarn_types.size();
+  std::vector<bool> in_warp(types, false);
+  std::vector<Index> for_weft(types, no_index);
+  for (std::size_t y = 0; y < network.yarn_type.size(); ++y)
+    if (network.yarn_family[y] == Family::warp) in_warp[network.yarn_type[y]] = true;
+  for (std::size_t y = 0; y < network.yarn_type.size(); ++y) {
+    const Index type = network.yarn_type[y];
+    if (network.yarn_family[y] == Family::warp || !in_warp[type]) continue;
+    if (for_weft[type] == no_index) {
+      for_weft[type] = static_cast<Index>(network.yarn_types.size());
+      network.yarn_types.push_back(YarnType(network.yarn_types[type]));
+    }
+    network.yarn_type[y] = for_weft[type];
+  }
+}
+
+// A textile's own contact angles replace those of its fibres, so that every part that asks a fibre sees them.
 void set_contact_angles(const TextileSpec& spec, const FibreLibrary& fibres, Fabric& fabric) {
-  for (YarnType& type : fabric.network.yarn_types) {
+  YarnNetwork& network = fabric.network;
+  if (spec.warp_contact_angle || spec.weft_contact_angle) part_families(network);
+  for (YarnType& type : network.yarn_types) {
     Fibre& fibre = type.fibre;
     const Fibre own = find_fibre(fibres, fibre.name)->fibre;  // a running textile's have been replaced already
     fibre.advancing_angle = spec.contact_angle.value_or(own.advancing_angle);
     fibre.receding_angle = spec.receding_angle.value_or(own.receding_angle);
-    fibre.receding_angle = std::min(fibre.receding_angle, fibre.advancing_angle);
   }
+  for (std::size_t y = 0; y < network.yarn_type.size(); ++y) {
+    const auto& of_family = network.yarn_family[y] == Family::warp ? spec.warp_contact_angle : spec.weft_contact_angle;
+    if (of_family) network.yarn_types[network.yarn_type[y]].fibre.advancing_angle = *of_family;
+  }
+  for (YarnType& type : network.yarn_types)
+    type.fibre.receding_angle = std::min(type.fibre.receding_angle, type.fibre.advancing_angle);
 }
 
 bool same_fabric(const FabricSpec& a, const FabricSpec& b) {
@@ -33,7 +58,8 @@ bool same_fabric(const FabricSpec& a, const FabricSpec& b) {
 }
 
 bool same_angles(const TextileSpec& a, const TextileSpec& b) {
-  return a.contact_angle == b.contact_angle && a.receding_angle == b.receding_angle;
+  return a.contact_angle == b.contact_angle && a.warp_contact_angle == b.warp_contact_angle &&
+         a.weft_contact_angle == b.weft_contact_angle && a.receding_angle == b.receding_angle;
 }
 
 bool same_liquid(const WettingLiquid& a, const WettingLiquid& b) {
