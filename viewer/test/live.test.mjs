@@ -387,8 +387,8 @@ textiles:`).replace('    - {centre: [0 mm, 0 mm, 1.3 mm], volume: 3 uL, velocity
     'liquid.kind.surface_tension': '40 mN/m', 'liquid.kind.viscosity': '3 mPa.s',
     'textiles[0].wetting.network.crossing_factor': '1', 'textiles[0].wetting.network.evaporation': 'false',
     gravity: '[0 m/s2, 3 m/s2, -9 m/s2]', 'liquid.droppers[0].volume': '0.6 uL', 'liquid.droppers[0].interval': '1.5 ms',
-    'liquid.droppers[0].centre': '[2 mm, -2 mm, 2 mm]', 'liquid.pipes[0].particle_rate': '8000',
-  }, 60);
+    'liquid.droppers[0].centre': '[2 mm, -2 mm, 2 mm]', 'liquid.pipes[0].particle_rate': '4000',
+  }, 150);
 });
 
 test('cloth stiffness, wind, absorb, leak and bounce are in the panel and reach the solver', async () => {
