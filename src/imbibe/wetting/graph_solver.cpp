@@ -1,6 +1,7 @@
 #include "imbibe/wetting/graph_solver.h"
 
 #include <algorithm>
+#include <array>
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
@@ -18,52 +19,82 @@ Real dot_product(std::span<const Real> a, std::span<const Real> b) {
   }, sum_tile);
 }
 
-Real largest_entry(std::span<const Real> a) {
-  return parallel_max(a.size(), Real(0), [&](std::size_t begin, std::size_t end) {
-    Real largest = 0;
-    // A number that is none compares false and stays, so it is seen.
-    for (std::size_t i = begin; i < end; ++i) largest = std::abs(a[i]) <= largest ? largest : std::abs(a[i]);
-    return largest;
-  }, sum_tile);
+// A number that is none compares false and stays, so it is seen.
+Real largest_between(std::span<const Real> a, std::size_t begin, std::size_t end) {
+  Real largest = 0;
+  for (std::size_t i = begin; i < end; ++i) largest = std::abs(a[i]) <= largest ? largest : std::abs(a[i]);
+  return largest;
 }
 
-// Pivots of the blocks, inverted: 1/d_i, d_i = a_ii - sum over j < i of a_ij a_ji / d_j.
-void factorise(const GraphMatrix& m, std::span<Real> inverse_pivot) {
-  parallel_tiles(m.rows(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Real pivot = m.diagonal[i];
-      for (Index k = m.row_start[i]; k < m.row_start[i + 1] && m.column[k] < i; ++k) {
-        const Index j = m.column[k];
-        if (j < begin) continue;
-        Real back = 0;
-        for (Index n = m.row_start[j + 1]; n-- > m.row_start[j] && m.column[n] >= i;) {
-          if (m.column[n] == i) back += m.value[n];
-        }
-        pivot -= m.scale[i] * m.value[k] * (m.scale[j] * back) * inverse_pivot[j];
+Real largest_entry(std::span<const Real> a) {
+  return parallel_max(a.size(), Real(0), [&](std::size_t begin, std::size_t end) { return largest_between(a, begin, end); },
+                      sum_tile);
+}
+
+struct Block {
+  std::size_t begin = 0, end = 0;
+};
+
+// In a block each row waits for the one before it, some 25 cycles on end; rows of other blocks can be worked out meanwhile.
+// So a thread takes several blocks row by row in turn, as many as there are for it. What comes out is the same.
+constexpr std::size_t most_in_turn = 8;
+
+// Calls each(block, row) for the rows of all blocks, from first to last in each, then back(block, row) from last to first.
+template <class Each, class Back>
+void for_rows_of_blocks(std::size_t rows, Each&& each, Back&& back) {
+  const std::size_t blocks = (rows + factor_block - 1) / factor_block;
+  const auto threads = static_cast<std::size_t>(std::max(1, available_threads()));
+  parallel_tiles(blocks, [&](std::size_t first, std::size_t last) {
+    std::array<Block, most_in_turn> turn;
+    const std::size_t count = last - first;
+    for (std::size_t k = 0; k < count; ++k)
+      turn[k] = {(first + k) * factor_block, std::min(rows, (first + k + 1) * factor_block)};
+    for (std::size_t r = 0; r < factor_block; ++r)
+      for (std::size_t k = 0; k < count; ++k)
+        if (turn[k].begin + r < turn[k].end) each(turn[k], turn[k].begin + r);
+    for (std::size_t r = 1; r <= factor_block; ++r)
+      for (std::size_t k = 0; k < count; ++k)
+        if (turn[k].begin + r <= turn[k].end) back(turn[k], turn[k].end - r);
+  }, std::clamp<std::size_t>((blocks + threads - 1) / threads, 1, most_in_turn));
+}
+
+// Pivots of the blocks, inverted: 1/d_i, d_i = a_ii - sum over j < i of a_ij a_ji / d_j. And where in each row the entries
+// before and after the diagonal stand that belong to its block.
+void factorise(const GraphMatrix& m, std::span<Real> inverse_pivot, std::span<BlockRow> rows) {
+  for_rows_of_blocks(m.rows(), [&](const Block& block, std::size_t i) {
+    BlockRow& row = rows[i];
+    Index k = m.row_start[i];
+    const Index end = m.row_start[i + 1];
+    while (k < end && m.column[k] < block.begin) ++k;
+    row.first = k;
+    while (k < end && m.column[k] < i) ++k;
+    row.middle = k;
+    while (k < end && m.column[k] < block.end) ++k;
+    row.last = k;
+    Real pivot = m.diagonal[i];
+    for (k = row.first; k < row.middle; ++k) {
+      const Index j = m.column[k];
+      Real back = 0;
+      for (Index n = m.row_start[j + 1]; n-- > m.row_start[j] && m.column[n] >= i;) {
+        if (m.column[n] == i) back += m.value[n];
       }
-      inverse_pivot[i] = 1 / pivot;
+      pivot -= m.scale[i] * m.value[k] * (m.scale[j] * back) * inverse_pivot[j];
     }
-  }, factor_block);
+    inverse_pivot[i] = 1 / pivot;
+  }, [](const Block&, std::size_t) {});
 }
 
 // x = M^-1 b, block by block.
-void apply_factors(const GraphMatrix& m, std::span<const Real> inverse_pivot, std::span<const Real> b, std::span<Real> x) {
-  parallel_tiles(x.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Real sum = 0;
-      for (Index k = m.row_start[i]; k < m.row_start[i + 1] && m.column[k] < i; ++k) {
-        if (m.column[k] >= begin) sum += m.value[k] * x[m.column[k]];
-      }
-      x[i] = (b[i] - m.scale[i] * sum) * inverse_pivot[i];
-    }
-    for (std::size_t i = end; i-- > begin;) {
-      Real sum = 0;
-      for (Index k = m.row_start[i + 1]; k-- > m.row_start[i] && m.column[k] > i;) {
-        if (m.column[k] < end) sum += m.value[k] * x[m.column[k]];
-      }
-      x[i] -= m.scale[i] * sum * inverse_pivot[i];
-    }
-  }, factor_block);
+void apply_factors(const GraphMatrix& m, const LinearWorkspace& w, std::span<const Real> b, std::span<Real> x) {
+  for_rows_of_blocks(x.size(), [&](const Block&, std::size_t i) {
+    Real sum = 0;
+    for (Index k = w.rows[i].first; k < w.rows[i].middle; ++k) sum += m.value[k] * x[m.column[k]];
+    x[i] = (b[i] - m.scale[i] * sum) * w.inverse_pivot[i];
+  }, [&](const Block&, std::size_t i) {
+    Real sum = 0;
+    for (Index k = w.rows[i].last; k-- > w.rows[i].middle;) sum += m.value[k] * x[m.column[k]];
+    x[i] -= m.scale[i] * sum * w.inverse_pivot[i];
+  });
 }
 
 }  // namespace
@@ -90,7 +121,8 @@ LinearSolve solve_bicgstab(const GraphMatrix& matrix, std::span<const Real> righ
     return report;
   }
   w.inverse_pivot.resize(n);
-  factorise(matrix, w.inverse_pivot);
+  w.rows.resize(n);
+  factorise(matrix, w.inverse_pivot, w.rows);
   w.r0 = w.r;
   Real rho = 1, alpha = 1, omega = 1;
   while (report.iterations < most_iterations) {
@@ -100,7 +132,7 @@ LinearSolve solve_bicgstab(const GraphMatrix& matrix, std::span<const Real> righ
     const Real beta = next_rho / rho * (alpha / omega);
     rho = next_rho;
     parallel_for(n, [&](std::size_t i) { w.p[i] = w.r[i] + beta * (w.p[i] - omega * w.v[i]); }, sum_tile);
-    apply_factors(matrix, w.inverse_pivot, w.p, w.y);
+    apply_factors(matrix, w, w.p, w.y);
     multiply(matrix, w.y, w.v);
     alpha = rho / dot_product(w.r0, w.v);
     if (!std::isfinite(alpha)) break;
@@ -108,15 +140,17 @@ LinearSolve solve_bicgstab(const GraphMatrix& matrix, std::span<const Real> righ
       x[i] += alpha * w.y[i];
       w.r[i] -= alpha * w.v[i];
     }, sum_tile);
-    apply_factors(matrix, w.inverse_pivot, w.r, w.y);
+    apply_factors(matrix, w, w.r, w.y);
     multiply(matrix, w.y, w.t);
     const Real tt = dot_product(w.t, w.t);
     omega = tt > 0 ? dot_product(w.t, w.r) / tt : 0;
-    parallel_for(n, [&](std::size_t i) {
-      x[i] += omega * w.y[i];
-      w.r[i] -= omega * w.t[i];
+    report.residual = parallel_max(n, Real(0), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        x[i] += omega * w.y[i];
+        w.r[i] -= omega * w.t[i];
+      }
+      return largest_between(w.r, begin, end);
     }, sum_tile);
-    report.residual = largest_entry(w.r);
     if (!std::isfinite(report.residual)) break;
     if (report.residual <= wanted) {
       report.converged = true;

@@ -42,8 +42,14 @@ struct LinearSolve {
   Real residual = 0;  // largest entry of |b - A x|
 };
 
+// The entries of a row that belong to its block: [first, middle) before the diagonal, [middle, last) after it.
+struct BlockRow {
+  Index first = 0, middle = 0, last = 0;
+};
+
 // Scratch of the solver; reused between solves.
 struct LinearWorkspace {
+  std::vector<BlockRow> rows;
   std::vector<Real> inverse_pivot;
   std::vector<Real> r, r0, p, v, t, y;
 };
