@@ -61,7 +61,8 @@ namespace {
 
 constexpr std::size_t node_tile = 1024;
 constexpr int contact_passes = 4;
-constexpr int most_passes = 5;
+constexpr Real most_effort = 6;  // of a substep, in passes over the whole sheet; the closing one comes on top
+constexpr int slow_passes = 5;
 constexpr Real converged_part = 0.1;  // of the strain error: energy goes with its square
 
 struct Step {
@@ -132,7 +133,7 @@ void end_pins(Step& s) {
   }
 }
 
-void touch_solids(Step& s, Real h) {
+void touch_solids(Step& s, Real h, Real pull_part) {
   s.report.solid_contacts = 0;
   const std::size_t solids = s.loads.solids.size();
   for (std::size_t k = 0; k < solids; ++k) {
@@ -154,7 +155,7 @@ void touch_solids(Step& s, Real h) {
         const SolidTouch touch = touch_solid(solid, moved,
                                              {.position = s.sheet.position[i], .velocity = v, .inverse_mass = w,
                                               .half_thickness = reach,
-                                              .pull = s.sheet.cling[i] * s.work.node_area[i] / contact_passes}, h);
+                                              .pull = pull_part * s.sheet.cling[i] * s.work.node_area[i]}, h);
         clearance = touch.clearance;
         if (!touch.touches) continue;
         v += w * touch.impulse;
@@ -200,22 +201,34 @@ struct SubstepErrors {
 };
 
 // Cloth, its layers and the solids push on each other in turn until a pass changes the strain by little: threads stay as
-// long as they are where contacts stop them, and a pile rests on what is below it.
+// long as they are where contacts stop them, and a pile rests on what is below it. After the first passes only the pieces are
+// solved that the pass before still changed, and all of them once more at the end.
 SubstepErrors solve_together(Step& s, Real h) {
   const bool contacts = !s.work.self.hits.empty() || !s.loads.solids.empty();
+  const bool springs = s.params.model == ClothModel::provot;
   const int least = contacts ? contact_passes : 1;
+  const Real settled = converged_part * s.params.strain_error;
   SubstepErrors errors;
   begin_in_plane(s.work.topology, s.params, s.work.elastic);
-  for (int pass = 1; pass <= most_passes; ++pass) {
-    const InPlaneOutcome outcome = solve_in_plane(s.work.topology, s.params, s.nodes(), h, s.work.elastic);
+  Real effort = 0;
+  bool everywhere = true, closing = false;
+  for (int pass = 1; ; ++pass) {
+    const InPlaneOutcome outcome =
+        solve_in_plane(s.work.topology, s.params, s.nodes(), h, {everywhere, settled}, s.work.elastic);
+    effort += outcome.part;
     errors.turn = std::max(errors.turn, outcome.threads.turn);
-    // Relaxation closes a gap ever more slowly: what is left is about the last change times the passes.
-    errors.strain = std::max(outcome.threads.change(), pass * outcome.relaxed.change());
-    if (pass <= contact_passes) {
-      repel_near_pairs(self_rules(s), s.nodes(), h, 1.0 / contact_passes, s.work.self);
-      touch_solids(s, h);
+    // Relaxation closes a gap ever more slowly: what is left is some times the last change.
+    errors.strain = std::max(outcome.threads.change(), std::min(pass, slow_passes) * outcome.relaxed.change());
+    if (pass <= contact_passes || closing) {
+      const Real pull_part = pass <= contact_passes ? 1.0 / contact_passes : 0;
+      repel_near_pairs(self_rules(s), s.nodes(), h, pull_part, s.work.self);
+      touch_solids(s, h, pull_part);
     }
-    if (pass >= least && errors.strain < converged_part * s.params.strain_error) break;
+    const bool converged = errors.strain < settled && !outcome.threads.tightened;
+    const bool last = outcome.part == 0 || effort >= (springs ? slow_passes : most_effort);
+    if (everywhere && pass >= least && (converged || last || closing)) break;
+    closing = !everywhere && (converged || last);
+    everywhere = springs || pass < least || closing;
   }
   return errors;
 }

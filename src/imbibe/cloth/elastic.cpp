@@ -27,6 +27,32 @@ PassOutcome pass(const PieceList<Piece>& list, std::vector<PassOutcome>& tiles, 
   return all;
 }
 
+// The same for groups of neighbouring pieces, whose outcomes of the pass before say which of them are still to be solved.
+template <class Piece, class Solve>
+PassOutcome pass(const PieceList<Piece>& list, const PassScope& scope, std::vector<PassOutcome>& groups, Solve&& solve) {
+  constexpr std::size_t group = 32;
+  std::size_t before = 0;
+  for (std::size_t c = 0; c + 1 < list.colours.size(); ++c) {
+    const std::size_t first = list.colours[c], count = list.colours[c + 1] - first, here = (count + group - 1) / group;
+    groups.resize(std::max(groups.size(), before + here));
+    parallel_for(here, [&](std::size_t g) {
+      PassOutcome& outcome = groups[before + g];
+      if (scope.skips(outcome)) {
+        outcome.solved = 0;
+        return;
+      }
+      outcome = {};
+      const std::size_t begin = first + g * group, end = std::min(begin + group, first + count);
+      for (std::size_t k = begin; k < end; ++k) solve(list.pieces[k], k, outcome);
+      outcome.solved = end - begin;
+    }, tile / group);
+    before += here;
+  }
+  PassOutcome all;
+  for (std::size_t g = 0; g < before; ++g) all += groups[g];
+  return all;
+}
+
 template <class Piece, class Dry>
 void fill(const Sheet& sheet, const ClothParams& params, const std::vector<Piece>& pieces,
           std::vector<PieceMaterial>& materials, Dry&& dry_stiffness) {
@@ -101,7 +127,7 @@ void begin_in_plane(const SheetTopology& t, const ClothParams& params, ElasticWo
 }
 
 InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params, const NodeMotion& nodes, Real dt,
-                              ElasticWork& work) {
+                              const PassScope& scope, ElasticWork& work) {
   InPlaneOutcome all;
   const auto stretch = [&](const std::vector<PieceMaterial>& materials) {
     return [&, dt](const auto& piece, std::size_t k, PassOutcome& outcome) {
@@ -127,10 +153,13 @@ InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params,
     };
   };
   // The stiffest last: what is solved last holds best.
-  all.relaxed += pass(t.cell_shear, work.tiles, shear(work.cell_shear, work.given_cell_shear));
-  all.relaxed += pass(t.triangle_shear, work.tiles, shear(work.triangle_shear, work.given_triangle_shear));
-  all.relaxed += pass(t.triangle_stretch, work.tiles, stretch(work.triangle_stretch));
-  all.threads = solve_thread_stretch(t.thread_stretch, work.thread_stretch, nodes, dt, work.threads);
+  all.relaxed += pass(t.cell_shear, scope, work.cell_shear_groups, shear(work.cell_shear, work.given_cell_shear));
+  all.relaxed += pass(t.triangle_shear, scope, work.triangle_shear_groups, shear(work.triangle_shear, work.given_triangle_shear));
+  all.relaxed += pass(t.triangle_stretch, scope, work.triangle_stretch_groups, stretch(work.triangle_stretch));
+  all.threads = solve_thread_stretch(t.thread_stretch, work.thread_stretch, nodes, dt, work.threads, scope);
+  const std::size_t pieces = t.cell_shear.pieces.size() + t.triangle_shear.pieces.size() + t.triangle_stretch.pieces.size() +
+                             t.thread_stretch.pieces.size();
+  all.part = static_cast<Real>(all.relaxed.solved + all.threads.solved) / static_cast<Real>(pieces);
   return all;
 }
 

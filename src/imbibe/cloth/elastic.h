@@ -21,7 +21,7 @@ struct ElasticWork {
   std::vector<PieceMaterial> thread_stretch, triangle_stretch, cell_shear, triangle_shear, thread_bend, cell_bend, ring_bend,
       spring_threads, springs;
   std::vector<Real> given_stretch, given_cell_shear, given_triangle_shear;  // impulses of the passes of a substep [J s]
-  std::vector<PassOutcome> tiles;
+  std::vector<PassOutcome> tiles, cell_shear_groups, triangle_shear_groups, triangle_stretch_groups;
   ThreadSolve threads;
 };
 
@@ -38,9 +38,10 @@ void begin_in_plane(const SheetTopology& topology, const ClothParams& params, El
 struct InPlaneOutcome {
   PassOutcome threads;  // solved at once
   PassOutcome relaxed;  // solved one by one
+  Real part = 1;        // of the pieces that were solved
 };
 InPlaneOutcome solve_in_plane(const SheetTopology& topology, const ClothParams& params, const NodeMotion& nodes, Real dt,
-                              ElasticWork& work);
+                              const PassScope& scope, ElasticWork& work);
 
 // J, of the positions as they are; and the elongation of the most stretched piece.
 Real stored_energy(const Sheet& sheet, const SheetTopology& topology, const ElasticWork& work, const ClothParams& params);

@@ -67,11 +67,14 @@ Real mobility_of(const NodeMotion& nodes, const std::array<Index, N>& node, cons
   return sum;
 }
 
-// What a pass over pieces changed: the strains by which its impulses alone moved them, dt |J| S.
+// What a pass over pieces changed. Pieces solved one by one: the strains by which their impulses alone moved them, dt |J| S;
+// whole threads: the strains that others had left in them.
 struct PassOutcome {
   Real turn = 0;                      // threads.h
   Real greatest = 0;                  // change of strain
   Real squares = 0, area = 0;         // of the changes, over the cloth
+  std::size_t solved = 0;             // pieces
+  bool tightened = false;             // threads.h
 
   // Where a sheet hangs by a point the tension grows without bound as the mesh gets finer, and so does its error, over
   // an area that shrinks: one piece may be wrong by ten times what the sheet may be on average.
@@ -82,9 +85,18 @@ struct PassOutcome {
   }
   PassOutcome& operator+=(const PassOutcome& o) {
     turn = std::max(turn, o.turn), greatest = std::max(greatest, o.greatest);
-    squares += o.squares, area += o.area;
+    squares += o.squares, area += o.area, solved += o.solved;
+    tightened = tightened || o.tightened;
     return *this;
   }
+};
+
+// Which pieces a pass solves: all, or those that the pass before still changed by more than `settled` (in threads, or in
+// groups of neighbours). Where cloth hangs by a point a few threads need many passes and the rest of the sheet one.
+struct PassScope {
+  bool everywhere = true;
+  Real settled = 0;
+  bool skips(const PassOutcome& before) const { return !everywhere && before.change() < settled; }
 };
 
 // Solves one piece of stretch (or a spring), adds to `given` what it gave, and returns the change of strain.
@@ -119,22 +131,29 @@ void correct_stretch(const Piece& piece, const NodeMotion& nodes, Real limit, Re
 
 // As solve_stretch; returns the change of the angle.
 template <std::size_t N>
-Real solve_shear(const ShearPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt, Real& given) {
-  const LinearForm weft = linear_form(nodes, piece.node, piece.weft), warp = linear_form(nodes, piece.node, piece.warp);
-  const Vec3 a = weft.value + dt * weft.rate, b = warp.value + dt * warp.rate;
-  const Real length_a = norm(a), length_b = norm(b);
-  if (!(length_a > 0) || !(length_b > 0)) return 0;
-  const Vec3 ua = a / length_a, ub = b / length_b;
+inline Real solve_shear(const ShearPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt, Real& given) {
+  const Vec3 x = nodes.position[piece.node[0]], v = nodes.velocity[piece.node[0]];
+  std::array<Vec3, N> rate;  // beside the first node
+  Vec3 a, b;
+  for (std::size_t k = 1; k < N; ++k) {
+    rate[k] = nodes.velocity[piece.node[k]] - v;
+    const Vec3 ahead = (nodes.position[piece.node[k]] - x) + dt * rate[k];
+    a += piece.weft[k] * ahead, b += piece.warp[k] * ahead;
+  }
+  const Real squared_a = squared_norm(a), squared_b = squared_norm(b);
+  if (!(squared_a > 0) || !(squared_b > 0)) return 0;
+  const Real inverse_a = 1 / std::sqrt(squared_a), inverse_b = 1 / std::sqrt(squared_b);
+  const Vec3 ua = inverse_a * a, ub = inverse_b * b;
   const Real cosine = dot(ua, ub);
-  const Vec3 gradient_a = (ub - cosine * ua) / length_a, gradient_b = (ua - cosine * ub) / length_b;
+  const Vec3 gradient_a = inverse_a * (ub - cosine * ua), gradient_b = inverse_b * (ua - cosine * ub);
   std::array<Vec3, N> gradient;
-  Real mobility = 0;
+  Real mobility = 0, change = 0;
   for (std::size_t k = 0; k < N; ++k) {
     gradient[k] = piece.weft[k] * gradient_a + piece.warp[k] * gradient_b;
     mobility += nodes.inverse_mass[piece.node[k]] * squared_norm(gradient[k]);
+    if (k > 0) change += dot(gradient[k], rate[k]);
   }
-  const Real rate = dot(gradient_a, weft.rate) + dot(gradient_b, warp.rate);
-  const Real impulse = elastic_impulse(cosine, rate, stiffness, damping, mobility, dt, given);
+  const Real impulse = elastic_impulse(cosine, change, stiffness, damping, mobility, dt, given);
   for (std::size_t k = 0; k < N; ++k) nodes.give(piece.node[k], impulse * gradient[k]);
   given += impulse;
   return std::abs(impulse) * mobility * dt;

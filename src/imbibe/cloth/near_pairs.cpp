@@ -169,7 +169,11 @@ void neighbours_of(std::size_t k, const Grid& grid, const SelfContact& c, std::v
         const std::uint32_t bucket = grid.bucket_of(beside);
         for (std::uint32_t e = c.bucket_start[bucket]; e < c.bucket_start[bucket + 1]; ++e) {
           const Index other = c.bucket_triangle[e];
-          if (other > k && c.cell[other] == beside && box.overlaps(c.box[other])) others.push_back(other);
+          if (other <= k) continue;
+          const auto& place = c.cell[other];  // element by element: comparing the arrays calls memcmp
+          if (place[0] == beside[0] && place[1] == beside[1] && place[2] == beside[2] && box.overlaps(c.box[other])) {
+            others.push_back(other);
+          }
         }
       }
     }

@@ -1,12 +1,21 @@
 #include "imbibe/cloth/threads.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "imbibe/cloth/elastic.h"
 #include "imbibe/core/parallel.h"
 
 namespace imbibe {
 namespace {
+
+// A fifth of the turn at which directions of the pass before are no longer stable.
+constexpr Real tense_turn = 0.2;
+
+// By how much a pass changed the strain of an edge, all impulses of it together, from the equation that it solved.
+Real moved_strain(Real found, Real change, const PieceMaterial& m, Real dt) {
+  return dt / (dt + m.damping) * std::abs(found + change / (dt * m.stiffness));
+}
 
 // One pass over the edges [first, end) of one thread: the changes of their impulses.
 template <class Piece>
@@ -28,8 +37,9 @@ PassOutcome solve_stretch(const ThreadList<Piece>& threads, std::size_t first, s
     const Real reach = dt + m.damping;
     const Real lower = -reach * b * b_before * wi * dot(direction, direction_before);
     const Real diagonal = 1 / (dt * m.stiffness) + reach * b * b * (wi + wj) - lower * upper_before;
-    const Real side = -(length - 1 + m.damping * dot(direction, rate)) - work.impulse[e] / (dt * m.stiffness) -
-                      lower * change_before;
+    const Real strain = length - 1 + m.damping * dot(direction, rate) + work.impulse[e] / (dt * m.stiffness);
+    const Real side = -strain - lower * change_before;
+    work.strain[e] = strain;
     const Real inverse = 1 / diagonal;
     work.direction[e] = direction;
     change_before = work.change[e] = side * inverse;
@@ -58,9 +68,86 @@ PassOutcome solve_stretch(const ThreadList<Piece>& threads, std::size_t first, s
     const Real all = work.impulse[e] += change;
     const Real reach = dt * b * b * (nodes.inverse_mass[piece.node[0]] + nodes.inverse_mass[piece.node[1]]);
     outcome.turn = std::max(outcome.turn, std::abs(all) * reach);
-    outcome.add(std::abs(change) * reach, area_of(piece));
+    // Lines of springs cross each other far more closely than threads: what they change counts, as in relaxation.
+    outcome.add(std::is_same_v<Piece, SpringPiece> ? std::abs(change) * reach : moved_strain(work.strain[e], change, materials[e], dt),
+                area_of(piece));
   }
+  outcome.solved = end - first;
   return outcome;
+}
+
+Vec3 product(const Vec3 (&row)[3], const Vec3& v) { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
+
+// N = (1/E + S)^-1 with S = s - part * before and E = across + along d d^T, and side = N / E right. With K = 1 + across S,
+// which is never near singular, and p = d / K:  N = across / K + along p p / (1 + along d.S p): exact for threads of any stiffness.
+void eliminate(const Vec3& d, Real along, Real across, Real s, Real part, const Vec3& right, const Vec3 (&before)[3],
+               ThreadSolve::Block& block) {
+  const Vec3 left[3]{Vec3{s, 0, 0} - part * before[0], Vec3{0, s, 0} - part * before[1], Vec3{0, 0, s} - part * before[2]};
+  const Vec3 k0 = Vec3{1, 0, 0} + across * left[0], k1 = Vec3{0, 1, 0} + across * left[1],
+             k2 = Vec3{0, 0, 1} + across * left[2];
+  Vec3 inverse[3]{cross(k1, k2), cross(k2, k0), cross(k0, k1)};  // of a symmetric matrix
+  const Real determinant = dot(k0, inverse[0]);
+  for (Vec3& row : inverse) row = row / determinant;
+  const Vec3 p = product(inverse, d), seen = product(left, p);
+  const Real stiff = 1 + along * dot(d, seen), share = along / stiff;
+  block.row[0] = across * inverse[0] + (share * p.x) * p;
+  block.row[1] = across * inverse[1] + (share * p.y) * p;
+  block.row[2] = across * inverse[2] + (share * p.z) * p;
+  const Real right_along = dot(right, d);
+  const Vec3 right_across = right - right_along * d;
+  block.side = product(inverse, right_across) + (right_along / stiff - share * dot(seen, right_across)) * p;
+}
+
+// The same for a tense thread, with vectors.
+template <class Piece>
+PassOutcome solve_tense_stretch(const ThreadList<Piece>& threads, std::size_t first, std::size_t end,
+                                const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt,
+                                ThreadSolve& work) {
+  static constexpr ThreadSolve::Block none{};
+  const ThreadSolve::Block* before = &none;
+  Real b_before = 0;
+  for (std::size_t e = first; e < end; ++e) {
+    const Piece& piece = threads.pieces[e];
+    const auto [i, j] = piece.node;
+    const Real b = piece.weight[1], wi = nodes.inverse_mass[i], wj = nodes.inverse_mass[j];
+    const Vec3 rate = b * (nodes.velocity[j] - nodes.velocity[i]);
+    const Vec3 ahead = b * (nodes.position[j] - nodes.position[i]) + dt * rate;
+    const Real length = norm(ahead);
+    const Vec3 direction = length > 0 ? ahead / length : work.direction[e];
+    const PieceMaterial& m = materials[e];
+    const Real soft = dt * m.stiffness, strain = length - 1 + m.damping * dot(direction, rate);
+    const Real tension = std::max(Real{0}, -dot(direction, work.given[e]));
+    const Real across = length > 0 ? dt * tension / length : 0;
+    const Real beside = wi * b * b_before;
+    const Vec3 right = -(soft * strain) * direction - work.given[e];
+    eliminate(direction, soft * (dt + m.damping) - across, across, b * b * (wi + wj), beside * beside, right, before->row,
+              work.block[e]);
+    work.block[e].side += beside * product(work.block[e].row, before->side);
+    work.direction[e] = direction;
+    work.strain[e] = strain + dot(direction, work.given[e]) / soft;
+    before = &work.block[e], b_before = b;
+  }
+  PassOutcome outcome;
+  Vec3 after;
+  Real b_after = 0;
+  for (std::size_t e = end; e-- > first;) {
+    const Piece& piece = threads.pieces[e];
+    const Real b = piece.weight[1];
+    after = work.block[e].side + (nodes.inverse_mass[piece.node[1]] * b * b_after) * product(work.block[e].row, after);
+    b_after = b;
+    nodes.give(piece.node[0], -b * after);
+    nodes.give(piece.node[1], b * after);
+    work.given[e] += after;
+    work.impulse[e] = dot(work.given[e], work.direction[e]);
+    outcome.add(moved_strain(work.strain[e], dot(after, work.direction[e]), materials[e], dt), area_of(piece));
+  }
+  outcome.solved = end - first;
+  return outcome;
+}
+
+// From numbers to vectors, after the first pass.
+void tighten(std::size_t first, std::size_t end, ThreadSolve& work) {
+  for (std::size_t e = first; e < end; ++e) work.given[e] = work.impulse[e] * work.direction[e];
 }
 
 // The nodes [first, end) of one thread, without its ends. Rows are divided by dt + beta, which makes the matrix symmetric.
@@ -117,27 +204,45 @@ template <class Piece>
 void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work) {
   const std::size_t n = threads.pieces.size();
   work.direction.resize(n), work.upper.resize(n), work.change.resize(n);
+  work.strain.resize(n), work.given.resize(n), work.block.resize(n);
   work.impulse.assign(n, 0);
   work.outcome.resize(threads.size());
+  work.tense.assign(threads.size(), 0);
 }
 
 template <class Piece>
 PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
-                                 const NodeMotion& nodes, Real dt, ThreadSolve& work) {
+                                 const NodeMotion& nodes, Real dt, ThreadSolve& work, const PassScope& scope) {
   for_threads(threads, [&](std::size_t t) {
-    work.outcome[t] = solve_stretch(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work);
+    PassOutcome& outcome = work.outcome[t];
+    const std::size_t first = threads.first[t], end = threads.first[t + 1];
+    if (scope.skips(outcome)) {
+      outcome.solved = 0;
+      return;
+    }
+    if (work.tense[t]) {
+      outcome = solve_tense_stretch(threads, first, end, materials, nodes, dt, work);
+      return;
+    }
+    outcome = solve_stretch(threads, first, end, materials, nodes, dt, work);
+    if (std::is_same_v<Piece, SpringPiece>) return;
+    if (outcome.turn > tense_turn) {
+      tighten(first, end, work);
+      work.tense[t] = 1, outcome.tightened = true;
+    }
+    outcome.turn = 0;
   });
   PassOutcome all;
-  for (const PassOutcome& outcome : work.outcome) all += outcome;
+  for (PassOutcome& outcome : work.outcome) all += outcome, outcome.tightened = false;
   return all;
 }
 
 template void begin_thread_stretch(const ThreadList<StretchPiece<2>>&, ThreadSolve&);
 template void begin_thread_stretch(const ThreadList<SpringPiece>&, ThreadSolve&);
 template PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>&, const std::vector<PieceMaterial>&,
-                                          const NodeMotion&, Real, ThreadSolve&);
+                                          const NodeMotion&, Real, ThreadSolve&, const PassScope&);
 template PassOutcome solve_thread_stretch(const ThreadList<SpringPiece>&, const std::vector<PieceMaterial>&,
-                                          const NodeMotion&, Real, ThreadSolve&);
+                                          const NodeMotion&, Real, ThreadSolve&, const PassScope&);
 
 void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt) {
   for_threads(threads, [&](std::size_t t) {

@@ -15,6 +15,11 @@
 // leave, without which stirred cloth gains energy at substeps near a millisecond. Directions are those at the predicted places; that is
 // stable while the transverse waves of the tension are resolved,
 //   2 dt |J| b^2 (w_i + w_j) < 2                                      (turn, below)
+// Threads that the first pass finds tenser than a part of that are solved with their tension in the passes that follow: the
+// unknowns are vectors P_e, which resist across the edge too,
+//   P_e + E_e D C'_e = T_e d_e - P_e (before),   E_e = dt [(dt + beta_e) k_e d_e d_e^T + dt t_e (1 - d_e d_e^T)]
+// T_e = -dt k_e (C~_e + beta_e C'_e), t_e the tension per length of the pass before (0 where pushed): blocks of three in place of
+// numbers, positive for any substep, and where passes no longer change anything the same equation J = T.
 // Source: direct solution of chains of constraints, Deul et al., Comput. Graph. Forum 37 (2018) 313, for rods.
 // Tested in tests/cloth/threads_test.cpp (against a dense solution) and closed_forms_test.cpp.
 #pragma once
@@ -34,6 +39,13 @@ struct ThreadSolve {
   std::vector<Real> upper, change;   // eliminated upper diagonal; right-hand side of a pass
   std::vector<Real> impulse;         // J of all passes [J s]
   std::vector<PassOutcome> outcome;  // of each thread
+  std::vector<Real> strain;          // that a pass found: C~ + beta C' + J/(dt k)
+  std::vector<std::uint8_t> tense;   // threads solved with their tension
+  std::vector<Vec3> given;           // P of all passes, of tense threads
+  struct Block {                     // N = (1/E + S)^-1, S what the edges before leave; and the right-hand side
+    Vec3 row[3]{}, side{};
+  };
+  std::vector<Block> block;
 
   struct BendRow {
     Real diagonal = 0, lower1 = 0, lower2 = 0;  // of the factors L D L^T
@@ -49,7 +61,7 @@ template <class Piece>
 void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work);
 template <class Piece>
 PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
-                                 const NodeMotion& nodes, Real dt, ThreadSolve& work);
+                                 const NodeMotion& nodes, Real dt, ThreadSolve& work, const PassScope& scope = {});
 // Provot's correction (impulse.h) of the springs of all lines but those of flexion.
 void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt);
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
