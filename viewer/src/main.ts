@@ -284,7 +284,8 @@ function pick(hit: Hit | null): void {
   pickTimer = window.setInterval(() => { if (running()) ask(); }, 400);
 }
 function forgetPick(): void { picked = null; window.clearInterval(pickTimer); byId('pick').hidden = true; }
-function onInspect(message: InspectMessage): void { if (picked) showPick(byId('pick'), message, forgetPick); }
+const looks: ((place: InspectMessage['place']) => void)[] = [];  // of tests
+function onInspect(message: InspectMessage): void { looks.shift()?.(message.place); if (picked) showPick(byId('pick'), message, forgetPick); }
 
 function setMode(next: 'look' | 'drop'): void {
   mode = next;
@@ -411,6 +412,7 @@ Object.assign(window, {
     get holder() { return holder; },
     send: (message: { type: string }) => connection.send(message),
     ask,
+    inspect: (textile: number, node: number) => new Promise((resolve) => { looks.push(resolve); connection.send({ type: 'inspect', swatch: 0, textile, node }); }),
     sendRaw: (text: string) => connection.sendRaw(text),
     openText: (name: string, text: string) => connection.send({ type: 'open', swatch: 0, name, text }),
     screen: (place: [number, number, number], swatch = 0) => view.onScreen(new THREE.Vector3(...place).multiplyScalar(1000), swatch),

@@ -109,7 +109,10 @@ export type Section =
   | { kind: 'vertices'; owner: number; values: Float32Array }
   | { kind: 'triangles'; owner: number; values: Uint32Array }
   | { kind: 'cloth triangles'; owner: number; values: Uint32Array }
-  | { kind: 'cloth places'; owner: number; values: Float32Array };
+  | { kind: 'cloth places'; owner: number; values: Float32Array }
+  | { kind: 'sheet'; owner: number; points: Points }
+  | { kind: 'sheet triangles'; owner: number; values: Uint32Array }
+  | { kind: 'carried'; owner: number; count: number; data: DataView };
 
 export interface Frame {
   swatch: number; geometry: boolean; generation: number; number: number; flags: number;
@@ -147,6 +150,9 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
       case 7: sections.push({ kind: 'triangles', owner, values: new Uint32Array(buffer.slice(from, from + bytes)) }); break;
       case 8: sections.push({ kind: 'cloth triangles', owner, values: new Uint32Array(buffer.slice(from, from + bytes)) }); break;
       case 9: sections.push({ kind: 'cloth places', owner, values: new Float32Array(buffer.slice(from, from + bytes)) }); break;
+      case 10: sections.push({ kind: 'sheet', owner, points: points() }); break;
+      case 11: sections.push({ kind: 'sheet triangles', owner, values: new Uint32Array(buffer.slice(from, from + bytes)) }); break;
+      case 12: sections.push({ kind: 'carried', owner, count, data: new DataView(buffer, from, bytes) }); break;
       default: break;  // of a later version: left out
     }
     at = from + ((bytes + 3) & ~3);

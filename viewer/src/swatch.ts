@@ -6,6 +6,7 @@ import { Liquid } from './liquid';
 import { Series } from './series';
 import { solidMesh } from './solids';
 import { Pores } from './pores';
+import { Sheet } from './sheet';
 import { MM, Yarns, type YarnLook } from './yarns';
 
 function boxOf({ origin, step, xyz }: Points): THREE.Box3 {
@@ -87,6 +88,7 @@ export class Swatch {
       if (section.kind === 'saturations') yarns.saturation.set(section.values), yarns.saturationChanged();
       else if (section.kind === 'changes') applyChanges(yarns.saturation, section.bytes, section.count), yarns.saturationChanged();
       else if (section.kind === 'yarns') yarns.setPoints(section.points), this.shadowsStale = true, yarns.moved = true;
+      else if (section.kind === 'sheet' && yarns instanceof Yarns) yarns.setSheet(section.points), this.shadowsStale = true, yarns.moved = true;
     }
   }
 
@@ -95,7 +97,7 @@ export class Swatch {
     if (!message || frame.generation !== message.generation) return;
     this.clear();
     const meshes = new Map<number, { vertices: Float32Array; triangles: Uint32Array }>();
-    const places = new Map<number, Float32Array>(), nodes = new Map<number, Points>();
+    const sheets = new Map<number, Uint32Array>(), places = new Map<number, Float32Array>(), nodes = new Map<number, Points>();
     for (const section of frame.sections) if (section.kind === 'cloth places') places.set(section.owner, section.values);
     for (const section of frame.sections) {
       if (section.kind === 'yarns' && section.owner >= message.textiles.length) {
@@ -112,6 +114,10 @@ export class Swatch {
         this.things.add(yarns.group);
       } else if (section.kind === 'pores') {
         this.pores[section.owner] = new Pores(section.points, this.yarns[section.owner]!);
+      } else if (section.kind === 'sheet triangles') {
+        sheets.set(section.owner, section.values);
+      } else if (section.kind === 'carried') {
+        this.yarns[section.owner]!.sheet = new Sheet(sheets.get(section.owner)!, section.count, section.data);
       } else if (section.kind === 'vertices') {
         meshes.set(section.owner, { vertices: section.values, triangles: new Uint32Array() });
       } else if (section.kind === 'triangles') {

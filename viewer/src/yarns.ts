@@ -3,6 +3,7 @@
 // points' texture.
 import * as THREE from 'three';
 import type { Points, TextileInfo } from './protocol';
+import type { Sheet } from './sheet';
 
 export const MM = 1000;  // the page draws in millimetres
 
@@ -101,6 +102,18 @@ export class Yarns {
       for (let k = 0; k < 3; ++k) this.points[4 * i + k] = MM * (origin[k]! + step[k]! * xyz[3 * i + k]!);
     if (this.pointTexture) this.pointTexture.needsUpdate = true;
   }
+
+  // The sheet that it rides on has moved.
+  sheet: Sheet | null = null;
+  setSheet(nodes: Points): void {
+    if (!this.sheet) return;
+    this.sheet.place(nodes, this.points);
+    this.box.makeEmpty();
+    const at = new THREE.Vector3();
+    for (let i = 0; i < this.count; ++i) this.box.expandByPoint(at.fromArray(this.points, 4 * i));
+    this.pointTexture.needsUpdate = true;
+  }
+  get count(): number { return this.firstPoint[this.firstPoint.length - 1]!; }
 
   // Of a soft sheet: no longer where the scene message puts the cloth.
   private readonly bent = { value: 0 };

@@ -480,6 +480,21 @@ test('the yarns of a network on a soft sheet move, and its pores are picked wher
   await steps(page, 40);
   const after_ = await heights();
   assert.ok(after_.some((z, i) => Math.abs(z - before_[i]) > 1e-3), `${before_} mm, then ${after_} mm`);
+  // The frames tell where the sheet is; the page finds the yarns on it where the simulation has them.
+  const { largest, count, middles } = await page.evaluate(() => {
+    const s = window.imbibe.swatches[0], yarns = s.yarns[0], rings = yarns.info.steps_per_segment, middles = [];
+    for (const yarn of [0, 17, 60, yarns.firstSegment.length - 2])
+      for (const k of [0, 20]) {
+        const p = 4 * (yarns.firstPoint[yarn] + k * rings + rings / 2);
+        middles.push({ node: yarns.firstSegment[yarn] + k, at: [...yarns.points.slice(p, p + 3)] });
+      }
+    return { largest: s.frameBytes / s.frames, count: yarns.count, middles };
+  });
+  assert.ok(largest < 3 * count, `${largest} bytes a frame for ${count} points`);
+  for (const { node, at } of middles) {
+    const place = await page.evaluate((n) => window.imbibe.inspect(0, n), node);
+    assert.ok(Math.hypot(...place.map((x, k) => 1000 * x - at[k])) < 0.02, `segment ${node}: ${place.map((x) => 1000 * x)} mm, on the page ${at}`);
+  }
   await page.keyboard.press('t');
   await page.keyboard.press('i');
   const pore = await page.evaluate(() => {

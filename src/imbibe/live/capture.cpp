@@ -36,16 +36,24 @@ const std::vector<std::string>& live_columns() {
   return names;
 }
 
-QuantisedPoints thinned_points(const YarnNetwork& network, std::span<const Vec3> all) {
-  const auto stride = static_cast<Index>(std::max(1, network.points_per_segment / shown_steps_per_segment));
-  std::vector<Vec3f> points;
+static int shown_stride(const YarnNetwork& network) { return std::max(1, network.points_per_segment / shown_steps_per_segment); }
+
+// Numbers of the points that are shown.
+static std::vector<Index> thinned(const YarnNetwork& network) {
+  const auto stride = static_cast<Index>(shown_stride(network));
+  std::vector<Index> shown;
   for (std::size_t y = 0; y + 1 < network.yarn_first_point.size(); ++y)
-    for (Index i = network.yarn_first_point[y]; i < network.yarn_first_point[y + 1]; i += stride) points.emplace_back(all[i]);
-  return quantise(points.size(), [&](std::size_t i) { return points[i]; });
+    for (Index i = network.yarn_first_point[y]; i < network.yarn_first_point[y + 1]; i += stride) shown.push_back(i);
+  return shown;
 }
 
-QuantisedPoints cloth_points(const CellCloth& cloth) {
-  const auto& nodes = cloth.soft.sheet.position;
+QuantisedPoints thinned_points(const YarnNetwork& network, std::span<const Vec3> all) {
+  const std::vector<Index> shown = thinned(network);
+  return quantise(shown.size(), [&](std::size_t i) { return all[shown[i]]; });
+}
+
+QuantisedPoints sheet_points(const SoftSheet& soft) {
+  const auto& nodes = soft.sheet.position;
   return quantise(nodes.size(), [&](std::size_t i) { return nodes[i]; });
 }
 
@@ -57,15 +65,31 @@ std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more) {
 
 namespace {
 
-int shown_stride(const YarnNetwork& network) { return std::max(1, network.points_per_segment / shown_steps_per_segment); }
-
 QuantisedPoints shown_points(const Textile& textile) { return thinned_points(textile.fabric->network, points_in_world(textile)); }
 
-// Where the yarns of a soft sheet are; null: they do not move.
-std::shared_ptr<const QuantisedPoints> moved_yarns(const Textile& textile, const std::shared_ptr<const QuantisedPoints>& before) {
+// Where the sheet is that the yarns ride on; null: they lie fixed.
+std::shared_ptr<const QuantisedPoints> moved_sheet(const Textile& textile, const std::shared_ptr<const QuantisedPoints>& before) {
   if (!textile.cloth) return nullptr;
   if (before && !textile.cloth->soft.moves()) return before;
-  return std::make_shared<const QuantisedPoints>(shown_points(textile));
+  return std::make_shared<const QuantisedPoints>(sheet_points(textile.cloth->soft));
+}
+
+std::vector<CarriedPoint> carried_points(const Textile& textile) {
+  std::vector<CarriedPoint> carried;
+  const YarnNetwork& network = textile.fabric->network;
+  for (const Index i : thinned(network)) {
+    const Vec3& p = network.points[i];
+    const SurfacePoint at = point_at(*textile.cloth->embedding, textile.cloth->soft.sheet, p.x, p.y);
+    const auto share = [&](int k) { return static_cast<std::uint16_t>(std::lround(65535 * std::clamp<Real>(at.weight[k], 0, 1))); };
+    carried.push_back({static_cast<std::uint32_t>(at.triangle), share(1), share(2), static_cast<float>(p.z)});
+  }
+  return carried;
+}
+
+std::vector<std::uint32_t> triangles_of(const Sheet& sheet) {
+  std::vector<std::uint32_t> triangles;
+  for (const auto& t : sheet.triangles) triangles.insert(triangles.end(), {t[0], t[1], t[2]});
+  return triangles;
 }
 
 // What a cloth of cells holds and where its nodes are; what has not changed is shared with the snapshot before.
@@ -77,7 +101,7 @@ void add_cloth(const CellCloth& cloth, std::size_t owner, const Snapshot* before
   const bool same = known && *before->saturations[owner] == *bytes;
   s.saturations.push_back(same ? before->saturations[owner] : std::move(bytes));
   const bool still = known && before->yarns[owner] && !cloth.soft.moves();
-  s.yarns.push_back(still ? before->yarns[owner] : std::make_shared<const QuantisedPoints>(cloth_points(cloth)));
+  s.yarns.push_back(still ? before->yarns[owner] : std::make_shared<const QuantisedPoints>(sheet_points(cloth.soft)));
 }
 
 }  // namespace
@@ -96,7 +120,8 @@ Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>&
                               return Float4{p.x, p.y, p.z, 0};
                             }));
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
-    s.yarns.push_back(moved_yarns(world.textiles[t], before ? before->yarns[t] : nullptr));
+    s.yarns.push_back(nullptr);
+    s.sheets.push_back(moved_sheet(world.textiles[t], before ? before->sheets[t] : nullptr));
     auto bytes = std::make_shared<Saturations>(saturations[t].size());
     std::transform(saturations[t].begin(), saturations[t].end(), bytes->begin(), saturation_byte);
     const bool same = before && t < before->saturations.size() && *before->saturations[t] == *bytes;
@@ -198,13 +223,15 @@ Geometry take_geometry(std::uint32_t generation, const Scene& scene, const World
     const std::vector<Vec3> nodes = nodes_in_world(textile);
     const std::size_t segments = textile.fabric->network.segments();
     g.pores.push_back(quantise(nodes.size() - segments, [&](std::size_t i) { return nodes[segments + i]; }));
+    const bool rides = textile.cloth && !texts.replay;  // a run's files say where the yarns are
+    g.sheet_triangles.push_back(rides ? triangles_of(textile.cloth->soft.sheet) : std::vector<std::uint32_t>{});
+    g.carried.push_back(rides ? carried_points(textile) : std::vector<CarriedPoint>{});
   }
   for (const CellCloth& cloth : world.cell_cloths) {
     cloths.push_back(cloth_json(cloth));
-    g.cloth_nodes.push_back(cloth_points(cloth));
-    std::vector<std::uint32_t>& triangles = g.cloth_triangles.emplace_back();
+    g.cloth_nodes.push_back(sheet_points(cloth.soft));
     const Sheet& sheet = cloth.soft.sheet;
-    for (const auto& t : sheet.triangles) triangles.insert(triangles.end(), {t[0], t[1], t[2]});
+    g.cloth_triangles.push_back(triangles_of(sheet));
     std::vector<float>& uv = g.cloth_uv.emplace_back();
     for (std::size_t i = 0; i < sheet.size(); ++i) uv.insert(uv.end(), {float(sheet.u[i]), float(sheet.v[i])});
   }

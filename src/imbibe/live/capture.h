@@ -30,7 +30,7 @@ std::vector<double> live_values(const SeriesRow& row, const LiveColumns& more);
 // Centre lines are thinned to this many steps per half loop; the page draws round curves through them.
 inline constexpr int shown_steps_per_segment = 4;
 
-QuantisedPoints cloth_points(const CellCloth& cloth);
+QuantisedPoints sheet_points(const SoftSheet& soft);
 // Centre lines, thinned to what the page draws, of all points of a textile's yarns in the world.
 QuantisedPoints thinned_points(const YarnNetwork& network, std::span<const Vec3> all);
 

@@ -94,6 +94,7 @@ std::string FrameEncoder::encode(const Snapshot& s) {
     particles_ = nullptr;
     saturations_.assign(s.saturations.size(), nullptr);
     yarns_.assign(s.yarns.size(), nullptr);
+    sheets_.assign(s.sheets.size(), nullptr);
   }
   FrameWriter frame(swatch_, 0, s.generation, s.number, s.flags, s.values);
   if (s.particles && s.particles != particles_) frame.points(1, 0, *s.particles), particles_ = s.particles;
@@ -112,6 +113,8 @@ std::string FrameEncoder::encode(const Snapshot& s) {
   }
   for (std::size_t t = 0; t < s.yarns.size(); ++t)
     if (s.yarns[t] && s.yarns[t] != yarns_[t]) frame.points(4, t, *s.yarns[t]), yarns_[t] = s.yarns[t];
+  for (std::size_t t = 0; t < s.sheets.size(); ++t)
+    if (s.sheets[t] && s.sheets[t] != sheets_[t]) frame.points(10, t, *s.sheets[t]), sheets_[t] = s.sheets[t];
   return frame.finish();
 }
 
@@ -119,6 +122,11 @@ std::string encode_geometry(std::uint8_t swatch, const Geometry& g) {
   FrameWriter frame(swatch, 1, g.generation, 0, 0, {});
   for (std::size_t t = 0; t < g.yarns.size(); ++t) frame.points(4, t, g.yarns[t]);
   for (std::size_t t = 0; t < g.pores.size(); ++t) frame.points(5, t, g.pores[t]);
+  for (std::size_t t = 0; t < g.carried.size(); ++t) {
+    if (g.carried[t].empty()) continue;
+    frame.section(11, t, g.sheet_triangles[t].size() / 3, [&](std::string& out) { put_all(out, g.sheet_triangles[t]); });
+    frame.section(12, t, g.carried[t].size(), [&](std::string& out) { put_all(out, g.carried[t]); });
+  }
   for (std::size_t c = 0; c < g.cloth_nodes.size(); ++c) {
     frame.points(4, g.yarns.size() + c, g.cloth_nodes[c]);
     frame.section(8, g.yarns.size() + c, g.cloth_triangles[c].size() / 3,

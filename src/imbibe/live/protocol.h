@@ -25,6 +25,10 @@
 //   7     triangles   u32[3] each
 //   8     triangles   u32[3] each: of a cloth
 //   9     nodes       f32[2] each: where they lie in the flat cloth, m along weft and warp
+//   10    nodes       of the soft sheet that a textile's yarns ride on, as particles
+//   11    triangles   u32[3] each: of that sheet
+//   12    points      of its yarns, as in 4: u32 triangle, u16 second and third weight / 65535, f32 height: position =
+//                     sum of weights x corners + height x the normal there, mixed alike of the nodes' normals
 //
 // A frame without section 1 leaves the particles as they are; with it and no items there are none.
 //
@@ -67,7 +71,7 @@ class FrameEncoder {
   std::uint32_t generation_ = 0;
   std::shared_ptr<const QuantisedPoints> particles_;
   std::vector<std::shared_ptr<const Saturations>> saturations_;
-  std::vector<std::shared_ptr<const QuantisedPoints>> yarns_;
+  std::vector<std::shared_ptr<const QuantisedPoints>> yarns_, sheets_;
 };
 
 std::string encode_geometry(std::uint8_t swatch, const Geometry& geometry);

@@ -57,14 +57,27 @@ struct Snapshot {
   std::shared_ptr<const QuantisedPoints> particles;              // kept while the liquid rests
   // Per textile, then per cloth of cells: what its nodes hold, and where its yarns' points or its nodes are.
   std::vector<std::shared_ptr<const Saturations>> saturations;
-  std::vector<std::shared_ptr<const QuantisedPoints>> yarns;     // null: it does not move
+  std::vector<std::shared_ptr<const QuantisedPoints>> yarns;     // null: it does not move, or its sheet says where
+  // Per textile: where the nodes of the soft sheet are that its yarns ride on (Geometry::carried). A fiftieth of the points.
+  std::vector<std::shared_ptr<const QuantisedPoints>> sheets;    // null: it has none
 };
+
+// Where a point of a yarn rides: on a triangle of the sheet, by the weights of its second and third corner in 65535ths, and
+// so far from it along the normal.
+struct CarriedPoint {
+  std::uint32_t triangle = 0;
+  std::uint16_t second = 0, third = 0;
+  float height = 0;  // m
+};
+static_assert(sizeof(CarriedPoint) == 12);
 
 // What does not change while one world runs.
 struct Geometry {
   std::uint32_t generation = 0;
   std::string scene_json;                          // the scene message
   std::vector<QuantisedPoints> yarns, pores;       // per textile: centre lines of all yarns; pores
+  std::vector<std::vector<std::uint32_t>> sheet_triangles;  // per textile, of the sheet that its yarns ride on; empty: none
+  std::vector<std::vector<CarriedPoint>> carried;  // per textile: the points of `yarns`
   std::vector<QuantisedPoints> cloth_nodes;        // per cloth of cells
   std::vector<std::vector<std::uint32_t>> cloth_triangles;
   std::vector<std::vector<float>> cloth_uv;        // m, two per node: where it lies in the flat cloth
