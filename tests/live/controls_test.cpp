@@ -73,6 +73,21 @@ TEST(Controls, EveryOneThatIsLiveCanBeSetToItsOwnValue) {
   EXPECT_NO_THROW(apply_change(s, world, library, all));
 }
 
+TEST(Controls, ClothOfCellsHasNoneOfYarnsAndOneOfYarnsNoneOfCells) {
+  const Library library = read_library({IMBIBE_SOURCE_DIR});
+  for (const bool cells : {false, true}) {
+    const std::filesystem::path folder = std::filesystem::path(IMBIBE_SOURCE_DIR) / "scenes/cloth";
+    const Scene s = read_scene(folder / (cells ? "drop_on_hammock.yaml" : "network_on_hammock.yaml"));
+    std::set<std::string> paths;
+    for (const auto& row : nlohmann::json::parse(controls_json(s, build_world(s, library), library))) paths.insert(row["path"]);
+    for (const char* path : {"textiles[0].warp", "textiles[0].warp.fibre", "textiles[0].regain", "textiles[0].wetting.network.evaporation"})
+      EXPECT_EQ(paths.contains(path), !cells) << path;
+    EXPECT_EQ(paths.contains("textiles[0].wetting.cells.absorb"), cells);
+    EXPECT_TRUE(paths.contains("textiles[0].contact_angle"));
+    EXPECT_TRUE(paths.contains("textiles[0].sheet.soft.cloth.hand.stretch_weft"));
+  }
+}
+
 TEST(Controls, AngleThatIsNotGivenShowsTheFibresOwn) {
   const Library library = read_library({IMBIBE_SOURCE_DIR});
   const Scene s = scene();

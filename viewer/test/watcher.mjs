@@ -9,11 +9,13 @@ export class Watcher {
   frames = 0;
   bytes = 0;
   largest = 0;
+  longest = 0;    // ms between two frames
   values = null;  // of the newest frame
   texts = new Map();
   done = null;    // the newest answer to an ask
   columns = [];
   first = 0;      // performance.now() of the first frame
+  #last = 0;
   #parts = [];
   #size = 0;
   #waiting = [];
@@ -90,7 +92,9 @@ export class Watcher {
 
   #frame(payload) {
     if (payload[7] === 1) return;  // geometry
-    if (this.frames === 0) this.first = performance.now();
+    const now = performance.now();
+    if (this.frames === 0) this.first = now; else this.longest = Math.max(this.longest, now - this.#last);
+    this.#last = now;
     ++this.frames;
     this.bytes += payload.length;
     this.largest = Math.max(this.largest, payload.length);

@@ -40,7 +40,7 @@ for (const end = performance.now() + 1000 * seconds, begun = performance.now(); 
   others.forEach((w) => w.close());
   if (first.value('steps') === steps) break;  // at its end
   slices[many ? 'many' : 'one'].push({ rate: made / s, each: (now.others - cpu.others) / made, server: (now.server - cpu.server) / s,
-    frame: (now.server - cpu.server) / sent.reduce((a, b) => a + b, 0), fps: mean(sent) / s, time: (performance.now() - begun) / 1000 });
+    frame: (now.server - cpu.server) / sent.reduce((a, b) => a + b, 0), fps: mean(sent) / s, at: first.value('time_s'), time: (performance.now() - begun) / 1000 });
 }
 for (const [name, list] of Object.entries(slices)) {
   const of = (key) => mean(list.map((x) => x[key]));
@@ -48,6 +48,9 @@ for (const [name, list] of Object.entries(slices)) {
     `${of('fps').toFixed(1)} frames/s to each; server ${(100 * of('server')).toFixed(2)} % of a core, ${(1e6 * of('frame')).toFixed(0)} us a frame = ` +
     `${(100 * 30 * of('frame')).toFixed(2)} % of a core per viewer at 30 Hz`);
 }
+const slowest = [...slices.one, ...slices.many].reduce((a, b) => (b.fps < a.fps ? b : a));
+console.log(`least frames/s in 2 s: ${slowest.fps.toFixed(1)} after ${slowest.time.toFixed(0)} s, at ${slowest.at.toFixed(2)} s of ${first.value('time_s').toFixed(2)} s simulated ` +
+  `(${slowest.rate.toFixed(0)} steps/s, ${(1e3 * slowest.each).toFixed(1)} ms of processor time a step); longest time without a frame ${first.longest.toFixed(0)} ms`);
 // Neighbouring slices: what the run does meanwhile cancels out.
 const pairs = slices.many.map((m, i) => [slices.one[i], m, slices.one[i + 1]]).filter((p) => p[2]);
 const slower = (key) => 100 * mean(pairs.map(([a, m, b]) => (2 * m[key]) / (a[key] + b[key]) - 1));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -126,6 +127,25 @@ std::vector<StandIn> stand_ins(const Scene& scene, const World& world) {
   return out;
 }
 
+// Keys of a textile that nothing reads as its models are: controls without an effect would only mislead.
+bool is_read(const Scene& scene, const std::string& path) {
+  constexpr std::array only_of_yarns{"layer_gap", "layers", "stripes", "warp", "weft", "warp_contact_angle", "weft_contact_angle",
+                                     "receding_angle", "regain", "start", "contact", "weave", "weave_rows", "thickness",
+                                     "porosity", "porosity_by", "warp_crimp_share", "points_per_segment", "wetting.network"};
+  for (std::size_t i = 0; i < scene.textiles.size(); ++i) {
+    const TextileSpec& spec = scene.textiles[i];
+    const std::string prefix = fmt::format("textiles[{}].", i);
+    if (!path.starts_with(prefix)) continue;
+    const std::string_view key = std::string_view(path).substr(prefix.size());
+    const auto is = [&](std::string_view name) {
+      return key.starts_with(name) && (key.size() == name.size() || key[name.size()] == '.' || key[name.size()] == '[');
+    };
+    if (!spec.wetting.is_cells()) return !is("wetting.cells");
+    return std::none_of(only_of_yarns.begin(), only_of_yarns.end(), is);
+  }
+  return true;
+}
+
 const char* effect_name(Effect effect) {
   return effect == Effect::next_step ? "next step" : effect == Effect::restart ? "restart" : "never";
 }
@@ -146,7 +166,7 @@ std::string controls_json(const Scene& scene, const World& world, const Library&
   for (const auto& fibre : library.fibres.records) fibres.push_back(fibre.fibre.name);
   Json rows = Json::array();
   for (const Control& c : controls_of(scene)) {
-    if (c.effect == Effect::never) continue;
+    if (c.effect == Effect::never || !is_read(scene, c.row.path)) continue;
     Json row{{"path", c.row.path}, {"help", c.row.help}, {"effect", effect_name(c.effect)}};
     if (c.row.kind == RowKind::group) {
       row["kind"] = "group";

@@ -52,6 +52,9 @@ constexpr std::array only_at_restart{
     "textiles[].weave", "textiles[].weave_rows", "textiles[].stripes", "textiles[].thickness", "textiles[].areal_mass",
     "textiles[].porosity", "textiles[].porosity_by", "textiles[].warp_crimp_share", "textiles[].points_per_segment",
     "textiles[].start", "textiles[].warp.density", "textiles[].weft.density", "textiles[].sheet.kind",
+    "textiles[].sheet.soft.columns", "textiles[].sheet.soft.rows", "textiles[].sheet.soft.node_distance",
+    "textiles[].sheet.soft.mesh", "textiles[].sheet.soft.uv_scale", "textiles[].sheet.soft.transform",
+    "textiles[].wetting.cells.cell_size",
     // number of values per node
     "textiles[].wetting.kind", "textiles[].wetting.network.sorption", "textiles[].wetting.network.shells",
     "textiles[].wetting.network.hysteresis", "textiles[].wetting.network.pores",
