@@ -63,7 +63,9 @@ constexpr std::size_t node_tile = 1024;
 constexpr int contact_passes = 4;
 constexpr Real most_effort = 6;  // of a substep, in passes over the whole sheet; the closing one comes on top
 constexpr int slow_passes = 5;
-constexpr Real converged_part = 0.1;  // of the strain error: energy goes with its square
+// Of the strain error. What is left is energy, k times its square, and seen where liquid lies on stiff threads; springs are soft,
+// and passes beyond their fifth give them energy.
+constexpr Real converged_threads = 0.025, converged_springs = 0.1;
 
 struct Step {
   Sheet& sheet;
@@ -207,7 +209,7 @@ SubstepErrors solve_together(Step& s, Real h) {
   const bool contacts = !s.work.self.hits.empty() || !s.loads.solids.empty();
   const bool springs = s.params.model == ClothModel::provot;
   const int least = contacts ? contact_passes : 1;
-  const Real settled = converged_part * s.params.strain_error;
+  const Real settled = (springs ? converged_springs : converged_threads) * s.params.strain_error;
   SubstepErrors errors;
   begin_in_plane(s.work.topology, s.params, s.work.elastic);
   Real effort = 0;
