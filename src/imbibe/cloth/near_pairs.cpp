@@ -23,17 +23,18 @@ bool shares_node(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
 
 struct Grid {
   Vec3 origin{};
+  Vec3 reach{};  // half the size of the largest boxes
   Real inverse_cell = 0;
   std::uint32_t mask = 0;
+  std::uint32_t row = 1, layer = 1;  // cells of a row and a layer: neighbours along x lie side by side in memory
   std::array<std::int32_t, 3> cell_of(const Vec3& p) const {
     const Vec3 c = inverse_cell * (p - origin);
     return {static_cast<std::int32_t>(std::floor(c.x)), static_cast<std::int32_t>(std::floor(c.y)),
             static_cast<std::int32_t>(std::floor(c.z))};
   }
   std::uint32_t bucket_of(const std::array<std::int32_t, 3>& c) const {
-    const auto x = static_cast<std::uint32_t>(c[0]) * 73856093u, y = static_cast<std::uint32_t>(c[1]) * 19349663u,
-               z = static_cast<std::uint32_t>(c[2]) * 83492791u;
-    return (x ^ y ^ z) & mask;
+    return (static_cast<std::uint32_t>(c[0]) + row * static_cast<std::uint32_t>(c[1]) +
+            layer * static_cast<std::uint32_t>(c[2])) & mask;
   }
 };
 
@@ -51,24 +52,28 @@ Grid make_grid(const Sheet& sheet, Real thickness, SelfContact& c) {
   const std::size_t n = sheet.triangles.size();
   struct Extent {
     Bounds all{};
-    Real size = 0;
-    Extent& operator+=(const Extent& o) { return all.include(o.all), size = std::max(size, o.size), *this; }
+    Vec3 size{};
+    Extent& operator+=(const Extent& o) { return all.include(o.all), grow(o.size), *this; }
+    void grow(const Vec3& o) { size = {std::max(size.x, o.x), std::max(size.y, o.y), std::max(size.z, o.z)}; }
   };
   c.normal.resize(n), c.cell.resize(n), c.box.resize(n);
   const Extent extent = parallel_sum(n, [&](std::size_t begin, std::size_t end) {
     Extent e;
     for (std::size_t k = begin; k < end; ++k) {
       const Bounds box = c.box[k] = box_of(sheet, k, thickness, c.room);
-      const Vec3 size = box.size();
       e.all.include(box);
-      e.size = std::max({e.size, size.x, size.y, size.z});
+      e.grow(box.size());
       const auto& t = sheet.triangles[k];
       c.normal[k] = normalized(cross(sheet.position[t[1]] - sheet.position[t[0]],
                                      sheet.position[t[2]] - sheet.position[t[0]]));
     }
     return e;
   }, triangle_tile);
-  Grid grid{.origin = extent.all.lower, .inverse_cell = 1 / extent.size};
+  Grid grid{.origin = extent.all.lower, .reach = 0.5 * extent.size,
+            .inverse_cell = 1 / std::max({extent.size.x, extent.size.y, extent.size.z})};
+  const auto cells = grid.cell_of(extent.all.upper);
+  grid.row = static_cast<std::uint32_t>(cells[0] + 1) | 1u;  // odd: rows do not fall on each other in the table
+  grid.layer = grid.row * (static_cast<std::uint32_t>(cells[1] + 1) | 1u);
   std::uint32_t buckets = 1;
   while (buckets < 2 * n) buckets *= 2;
   grid.mask = buckets - 1;
@@ -138,7 +143,7 @@ struct Search {
   void visit(std::size_t ta, std::size_t tb) {
     // Neighbours at a corner that are nearly flat: no pieces of theirs can meet before they have turned, which
     // takes more than the room of slow nodes; fast ones are looked at.
-    if (shares_node(sheet.triangles[ta], sheet.triangles[tb]) && dot(contact.normal[ta], contact.normal[tb]) > 0.5 &&
+    if (dot(contact.normal[ta], contact.normal[tb]) > 0.5 && shares_node(sheet.triangles[ta], sheet.triangles[tb]) &&
         is_slow(ta) && is_slow(tb)) {
       return;
     }
@@ -161,19 +166,17 @@ struct Search {
 void neighbours_of(std::size_t k, const Grid& grid, const SelfContact& c, std::vector<Index>& others) {
   others.clear();
   const Bounds& box = c.box[k];
-  const auto cell = c.cell[k];
-  for (std::int32_t dz = -1; dz <= 1; ++dz) {
-    for (std::int32_t dy = -1; dy <= 1; ++dy) {
-      for (std::int32_t dx = -1; dx <= 1; ++dx) {
-        const std::array<std::int32_t, 3> beside{cell[0] + dx, cell[1] + dy, cell[2] + dz};
-        const std::uint32_t bucket = grid.bucket_of(beside);
+  // Centres of the boxes that overlap this one lie in these cells.
+  const auto lower = grid.cell_of(box.lower - grid.reach), upper = grid.cell_of(box.upper + grid.reach);
+  for (std::int32_t z = lower[2]; z <= upper[2]; ++z) {
+    for (std::int32_t y = lower[1]; y <= upper[1]; ++y) {
+      for (std::int32_t x = lower[0]; x <= upper[0]; ++x) {
+        const std::uint32_t bucket = grid.bucket_of({x, y, z});
         for (std::uint32_t e = c.bucket_start[bucket]; e < c.bucket_start[bucket + 1]; ++e) {
           const Index other = c.bucket_triangle[e];
-          if (other <= k) continue;
-          const auto& place = c.cell[other];  // element by element: comparing the arrays calls memcmp
-          if (place[0] == beside[0] && place[1] == beside[1] && place[2] == beside[2] && box.overlaps(c.box[other])) {
-            others.push_back(other);
-          }
+          if (other <= k || !box.overlaps(c.box[other])) continue;
+          const auto& place = c.cell[other];
+          if (place[0] == x && place[1] == y && place[2] == z) others.push_back(other);
         }
       }
     }
