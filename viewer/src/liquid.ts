@@ -42,7 +42,7 @@ export class Liquid {
   readonly uniforms: LiquidUniforms;
   private readonly thick: { value: number };
 
-  constructor(spacing: number) {
+  constructor(private spacing: number) {
     const radius = MM * spacing;
     this.uniforms = { uRadius: { value: 0.62 * radius }, uPixels: { value: 600 }, uProjection: { value: new THREE.Matrix4() },
       uCut: { value: new THREE.Vector4(0, 0, 0, 1) } };
@@ -80,6 +80,7 @@ export class Liquid {
       this.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * this.capacity), 3).setUsage(THREE.DynamicDrawUsage));
     }
     this.count = count;
+    if (points.every !== this.every) this.every = points.every, this.size();
     this.geometry.setDrawRange(0, count);
     const attribute = this.geometry.getAttribute('position') as THREE.BufferAttribute | undefined;
     if (!attribute) return;
@@ -89,7 +90,15 @@ export class Liquid {
   }
 
   // Smooth surfaces want larger balls than shaded ones, so that no gaps show.
-  forSurface(on: boolean, spacing: number): void { this.uniforms.uRadius.value = MM * spacing * (on ? 0.85 : 0.62); }
+  forSurface(on: boolean, spacing: number): void { this.spacing = spacing, this.smooth = on, this.size(); }
+
+  // One that stands for many is as large as they are together.
+  private every = 1;
+  private smooth = false;
+  private size(): void {
+    const spacing = MM * this.spacing * Math.cbrt(this.every);
+    this.uniforms.uRadius.value = spacing * (this.smooth ? 0.85 : 0.62), this.thick.value = spacing;
+  }
 
   dispose(): void {
     this.geometry.dispose();

@@ -98,7 +98,8 @@ export type ServerMessage =
   | { type: 'history'; swatch: number; generation: number; rows: (number | null)[][] }
   | { type: 'done'; swatch: number; ask: number; arrived: number; step: number; time: number };
 
-export interface Points { origin: Float32Array; step: Float32Array; xyz: Uint16Array }
+// `every`: each stands for so many, the others are not sent.
+export interface Points { origin: Float32Array; step: Float32Array; xyz: Uint16Array; every: number }
 
 export type Section =
   | { kind: 'particles'; points: Points }
@@ -132,13 +133,13 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
   const sections: Section[] = [];
   let at = 24 + 8 * valueCount;
   for (let i = 0; i < sectionCount; ++i) {
-    const kind = view.getUint8(at), owner = view.getUint8(at + 1);
+    const kind = view.getUint8(at), owner = view.getUint8(at + 1), every = Math.max(1, view.getUint16(at + 2, true));
     const count = view.getUint32(at + 4, true), bytes = view.getUint32(at + 8, true);
     const from = at + 12;
     const points = (): Points => ({
       origin: new Float32Array(buffer.slice(from, from + 12)),
       step: new Float32Array(buffer.slice(from + 12, from + 24)),
-      xyz: new Uint16Array(buffer, from + 24, 3 * count),
+      xyz: new Uint16Array(buffer, from + 24, 3 * count), every,
     });
     switch (kind) {
       case 1: sections.push({ kind: 'particles', points: points() }); break;

@@ -64,7 +64,7 @@ export class Swatch {
   begin(message: SceneMessage): void {
     this.message = message;
     this.generation = message.generation;
-    this.frames = 0;
+    this.frames = this.frameBytes = 0;
     this.series.load(message.history, message.replay);
     this.values = new Float64Array(this.series.columns.length);
   }

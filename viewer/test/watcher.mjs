@@ -10,6 +10,7 @@ export class Watcher {
   bytes = 0;
   largest = 0;
   longest = 0;    // ms between two frames
+  ended = false;  // the newest frame says so
   values = null;  // of the newest frame
   texts = new Map();
   done = null;    // the newest answer to an ask
@@ -96,6 +97,7 @@ export class Watcher {
     if (this.frames === 0) this.first = now; else this.longest = Math.max(this.longest, now - this.#last);
     this.#last = now;
     ++this.frames;
+    this.ended = (payload.readUInt16LE(16) & 2) !== 0;
     this.bytes += payload.length;
     this.largest = Math.max(this.largest, payload.length);
     this.values = Array.from({ length: payload.readUInt32LE(20) }, (_, i) => payload.readDoubleLE(24 + 8 * i));

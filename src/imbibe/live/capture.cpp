@@ -104,6 +104,20 @@ void add_cloth(const CellCloth& cloth, std::size_t owner, const Snapshot* before
   s.yarns.push_back(still ? before->yarns[owner] : std::make_shared<const QuantisedPoints>(sheet_points(cloth.soft)));
 }
 
+// Free particles and hanging drops; of many some, always the same ones (particles are sorted anew in every step).
+QuantisedPoints shown_particles(const World& world, const std::vector<Vec3>& hanging) {
+  const Particles& p = world.liquid.particles;
+  const std::size_t every = std::max<std::size_t>(1, (p.size() + most_shown_particles - 1) / most_shown_particles);
+  std::vector<Vec3f> shown;
+  shown.reserve(p.size() / every + hanging.size() + 64);
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p.id[i] % every == 0) shown.push_back({p.position[i].x, p.position[i].y, p.position[i].z});
+  for (const Vec3& x : hanging) shown.emplace_back(x);
+  QuantisedPoints points = quantise(shown.size(), [&](std::size_t i) { return shown[i]; });
+  points.every = static_cast<std::uint16_t>(std::min<std::size_t>(every, 65535));
+  return points;
+}
+
 }  // namespace
 
 Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>& saturations, const Snapshot* before) {
@@ -111,14 +125,9 @@ Snapshot take_snapshot(const World& world, const std::vector<std::vector<Real>>&
   const auto& positions = world.liquid.particles.position;
   const std::vector<Vec3> hanging = hanging_liquid(world);
   const std::size_t free = positions.size(), count = free + hanging.size();
-  const bool still = before && before->particles && before->particles->size() == count && world.pace.resting;
-  s.particles = still ? before->particles
-                      : std::make_shared<const QuantisedPoints>(
-                            quantise(count, [&](std::size_t i) {
-                              if (i < free) return positions[i];
-                              const Vec3f p(hanging[i - free]);
-                              return Float4{p.x, p.y, p.z, 0};
-                            }));
+  const bool still = before && before->particles && before->particle_count == count && world.pace.resting;
+  s.particle_count = count;
+  s.particles = still ? before->particles : std::make_shared<const QuantisedPoints>(shown_particles(world, hanging));
   for (std::size_t t = 0; t < world.textiles.size(); ++t) {
     s.yarns.push_back(nullptr);
     s.sheets.push_back(moved_sheet(world.textiles[t], before ? before->sheets[t] : nullptr));

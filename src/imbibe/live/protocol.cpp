@@ -34,8 +34,8 @@ class FrameWriter {
     put_all(out_, values);
   }
   template <class Fill>
-  void section(int kind, std::size_t owner, std::size_t items, Fill&& fill) {
-    put(out_, static_cast<std::uint8_t>(kind)), put(out_, static_cast<std::uint8_t>(owner)), put(out_, std::uint16_t{0});
+  void section(int kind, std::size_t owner, std::size_t items, Fill&& fill, std::uint16_t every = 0) {
+    put(out_, static_cast<std::uint8_t>(kind)), put(out_, static_cast<std::uint8_t>(owner)), put(out_, every);
     put(out_, static_cast<std::uint32_t>(items));
     const std::size_t size_at = out_.size();
     put(out_, std::uint32_t{0});
@@ -49,7 +49,7 @@ class FrameWriter {
     section(kind, owner, points.size(), [&](std::string& out) {
       put(out, points.origin), put(out, points.step);
       put_all(out, points.xyz);
-    });
+    }, points.every);
   }
   std::string finish() {
     std::memcpy(out_.data() + 18, &sections_, 2);

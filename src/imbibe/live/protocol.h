@@ -12,11 +12,12 @@
 //   20      u32         number of values
 //   24      f64[]       values, in the order of `columns` of the hello message
 //   then sections, each beginning at a multiple of 4:
-//   0       u8 u8 u16   section kind, textile or solid, 0
+//   0       u8 u8 u16   section kind, textile or solid, how many each point stands for (0: as 1)
 //   4       u32 u32     items, bytes of what follows (without padding)
 //
 //   kind  items       content
-//   1     particles   f32[3] origin, f32[3] step, u16[3] each: position = origin + step * value (m)
+//   1     particles   f32[3] origin, f32[3] step, u16[3] each: position = origin + step * value (m);
+//                     of more than most_shown_particles every second, third, ...
 //   2     nodes       u8 each: saturation * saturation_scale, of all nodes
 //   3     changes     of those that changed since the last frame to this viewer: LEB128 gap to the node before, then u8
 //   4     points      yarns' centre-line points, or nodes of a cloth, as particles

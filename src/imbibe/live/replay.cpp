@@ -94,8 +94,11 @@ void Replay::show(std::size_t number) {
                                         (number + 1 == frames_.times.size() ? flag_ended : 0));
   s->values = values_at(frame.time);
   s->values.front() = frame.time;
-  s->particles = std::make_shared<const QuantisedPoints>(
-      quantise(frame.particles.size(), [&](std::size_t i) { return frame.particles[i]; }));
+  const std::size_t every = std::max<std::size_t>(1, (frame.particles.size() + most_shown_particles - 1) / most_shown_particles);
+  QuantisedPoints particles = quantise(frame.particles.size() / every, [&](std::size_t i) { return frame.particles[i * every]; });
+  particles.every = static_cast<std::uint16_t>(std::min<std::size_t>(every, 65535));
+  s->particle_count = frame.particles.size();
+  s->particles = std::make_shared<const QuantisedPoints>(std::move(particles));
   std::size_t first_point = 0;
   for (std::size_t t = 0; t < world_.textiles.size(); ++t) {
     const YarnNetwork& network = world_.textiles[t].fabric->network;

@@ -20,6 +20,7 @@ std::uint8_t saturation_byte(Real saturation);
 struct QuantisedPoints {
   Vec3f origin{}, step{};           // m: position = origin + step * value
   std::vector<std::uint16_t> xyz;   // three per point
+  std::uint16_t every = 1;          // it stands for so many: the others are not shown
   std::size_t size() const { return xyz.size() / 3; }
 };
 // `point(i)` gives anything with x, y, z.
@@ -47,6 +48,9 @@ QuantisedPoints quantise(std::size_t count, Point&& point) {
   return q;
 }
 
+// Particles that a frame shows at most; of more every second, third, ... by number, so that frames stay below 200 kB.
+inline constexpr std::size_t most_shown_particles = 16000;
+
 using Saturations = std::vector<std::uint8_t>;  // per node of a textile: segments, then pores
 
 struct Snapshot {
@@ -54,6 +58,7 @@ struct Snapshot {
   std::uint32_t number = 0;       // counts the snapshots of a swatch
   std::uint16_t flags = 0;        // see protocol.h
   std::vector<double> values;     // as the columns of the hello message
+  std::size_t particle_count = 0;  // of free and hanging liquid; no more than most_shown_particles or so are in `particles`
   std::shared_ptr<const QuantisedPoints> particles;              // kept while the liquid rests
   // Per textile, then per cloth of cells: what its nodes hold, and where its yarns' points or its nodes are.
   std::vector<std::shared_ptr<const Saturations>> saturations;
