@@ -1,5 +1,5 @@
 // Takes what the page shows from a World: snapshots for frames, geometry and texts for the scene message, the contents
-// of one node for picking. Tested with the page, in viewer/test/live.test.mjs.
+// of one node for picking. Tested in tests/live/capture_test.cpp, and with the page in viewer/test/live.test.mjs.
 #pragma once
 
 #include <span>
