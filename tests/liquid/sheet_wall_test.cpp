@@ -130,7 +130,7 @@ TEST(SheetWall, AHeldSheetBearsTheLiquidsWeightAndLetsNothingThrough) {
   EXPECT_NEAR((raft.impulse - before).z, -weight, 0.25 * weight);
   for (const Float4& x : raft.liquid.particles.position) {
     if (std::abs(x.x) < 0.025f && std::abs(x.y) < 0.025f) {
-      EXPECT_GT(x.z, 0);
+      EXPECT_GT(x.z, -0.05 * raft.liquid.spacing());  // centres may touch: what would cross, the swept contact stops
     }
   }
 }

@@ -28,6 +28,8 @@ struct WallSample {
   float lambda = 0;             // of this wall alone
   Vec3f gradient{};             // this wall's part of G (weighted as above: the samples' gradients add up to G)
   Vec3f push{};                 // this wall's part of P, weighted alike; density.h takes out walls across a gap
+  float seen_contact = 1;       // as the particle alone sees it: 1 where liquid reaches this wall, 0 across a gap
+  float contact = 1;            // with what the liquid below it sees (density.h)
   float cos_contact_angle = 0;
   float cos_receding_angle = 0;  // the same without hysteresis
   float friction = 0;
@@ -55,6 +57,7 @@ struct Boundary {
   std::vector<Float4> wall;            // padded, per particle: xyz = G, w = lambda; 0 far from walls
   std::vector<Float4> push;            // padded, per particle: xyz = P
   std::vector<std::uint32_t> side;     // per particle: sides of two-sided walls (neighbours.h); empty without such walls
+  std::vector<std::uint8_t> dry;       // per particle: whether one of its walls is across a gap
   std::size_t near_walls = 0;          // particles with at least one sample
 
   std::span<const WallSample> samples(std::size_t i) const {

@@ -187,8 +187,8 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall) {
   Vec3f along = xyz(t.s.gradient[i]);
   along -= wall.normal * dot(along, wall.normal);
   const float length = norm(along), tau = length / std::max(1 - wall.lambda, 0.1f);
-  // 0 for spray on the wall (little colour), inside (filled) and where nothing points along the wall.
-  float activity =
+  // 0 for spray on the wall (little colour), inside (filled), where nothing points along the wall and across a gap.
+  float activity = wall.contact *
       ramp(f.colour[i], 0.22f, 0.28f) * ramp(-f.filling[i], -0.97f, -0.93f) * ramp(tau * support, 0.2f, 0.4f);
   if (activity == 0) return pull;
   const NearInterface seen = near_interface(t, i, wall);
