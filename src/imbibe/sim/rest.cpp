@@ -113,7 +113,10 @@ void judge_rest(World& world, const LiquidFields& fields) {
   const Real band = 0.05 * world.liquid.spacing();
   if (pace.calm_since < 0 || norm(centre - pace.calm_centre) > band || norm(extent - pace.calm_extent) > band)
     return begin_window();
-  const Real window = 0.5 * std::sqrt(kind.density * radius * radius * radius / kind.surface_tension);
+  // In the window what hangs free falls by twice the band: that of a few particles' own swing is too short to see them slip.
+  const Real pull = norm(world.gravity);
+  const Real window = std::max(0.5 * std::sqrt(kind.density * radius * radius * radius / kind.surface_tension),
+                               pull > 0 ? std::sqrt(4 * band / pull) : 0);
   const Real waited = world.time - pace.calm_since;
   if (waited < window) return;
   // What has just been let go falls too little to leave the band, but gains g t; single fast particles are spray.
