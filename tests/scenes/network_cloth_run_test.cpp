@@ -135,7 +135,7 @@ TEST(NetworkClothRun, AHangingStripDrainsDownByItsTrueHeightAndHangsStill) {
 TEST(NetworkClothRun, DriesBackToItsPlaceAndWeight) {
   World world = small_hammock({"liquid.drops=[]", "textiles[0].wetting={network: {}}", "air.humidity=20 %",
                                "air.mass_transfer=50 mm/s", "air.temperature=40 degC"});
-  test::run_until(world, 1.5);
+  test::run_until(world, 4);  // at rest
   Real dry = 0, wet = 0, again = 0;
   const auto lowest = [&] {
     Real z = 0;
@@ -150,8 +150,8 @@ TEST(NetworkClothRun, DriesBackToItsPlaceAndWeight) {
     textile.contents.liquid_kg[s] += more, added += more;
   }
   world.ledger.supplied_kg += added;
-  test::run_until(world, 1.51);  // the sheet learns of it at the end of a step
-  test::run_until(world, 3);
+  test::run_until(world, 4.01);  // the sheet learns of it at the end of a step
+  test::run_until(world, 7);
   wet = lowest();
   test::run_until(world, 1800);
   again = lowest();

@@ -65,7 +65,7 @@ constexpr Real most_effort = 6;  // of a substep, in passes over the whole sheet
 constexpr int slow_passes = 5;
 // Of the strain error. What is left is energy, k times its square, and seen where liquid lies on stiff threads; springs are soft,
 // and passes beyond their fifth give them energy.
-constexpr Real converged_threads = 0.025, converged_springs = 0.1;
+constexpr Real converged_threads = 0.005, converged_springs = 0.1;
 
 struct Step {
   Sheet& sheet;
@@ -222,7 +222,7 @@ SubstepErrors solve_together(Step& s, Real h) {
     // Relaxation closes a gap ever more slowly: what is left is some times the last change.
     errors.strain = std::max(outcome.threads.change(), std::min(pass, slow_passes) * outcome.relaxed.change());
     if (pass <= contact_passes || closing) {
-      const Real pull_part = pass <= contact_passes ? 1.0 / contact_passes : 0;
+      constexpr Real pull_part = 1.0 / (contact_passes + 1);  // the closing one too
       repel_near_pairs(self_rules(s), s.nodes(), h, pull_part, s.work.self);
       touch_solids(s, h, pull_part);
     }
@@ -269,7 +269,9 @@ Real first_substep(const Step& s) {
 // Errors and turn go as the square of the substep.
 Real next_substep(const ClothParams& params, Real last, Real taken, const SubstepErrors& errors) {
   constexpr Real greatest_turn = 0.25;  // an eighth of the bound in threads.h, which holds for straight threads
-  const Real part = std::max(errors.strain / params.strain_error, errors.turn / greatest_turn);
+  // Half of the error that is allowed: near the whole of it passes stop before they converge, which jolts cloth at rest.
+  const Real target = params.model == ClothModel::provot ? params.strain_error : 0.5 * params.strain_error;
+  const Real part = std::max(errors.strain / target, errors.turn / greatest_turn);
   const Real allowed = part > 0 ? 0.9 * taken / std::sqrt(part) : 2 * last;
   return std::clamp(std::clamp(allowed, 0.25 * last, 1.25 * last), params.shortest_substep, params.longest_substep);
 }
