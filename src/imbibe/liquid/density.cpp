@@ -141,8 +141,7 @@ namespace {
 void sum_pairs(LiquidFields& f) {
   const Kernel kernel = f.neighbours.kernel;
   const float volume = f.volume;
-  const Real ratio = static_cast<Real>(kernel.support) / static_cast<Real>(f.spacing);
-  const float own = volume * kernel.value(0) - static_cast<float>(lattice_excess(ratio) + disorder_excess);
+  const float own = volume * kernel.value(0) - f.lattice.excess;
   f.boundary.dry.assign(f.position.size(), 0);
   for_each_slice(f.neighbours, [&](const Slice& s) {
     const Floats4 here = simd::load4(&f.position[s.first]);

@@ -9,6 +9,10 @@ void begin_fields(LiquidFields& f, const Liquid& liquid) {
   f.volume = static_cast<float>(liquid.particle_mass / liquid.kind.density);
   f.particle_mass = static_cast<float>(liquid.particle_mass);
   f.rest_density = static_cast<float>(liquid.kind.density);
+  const Real ratio = static_cast<Real>(f.neighbours.kernel.support) / static_cast<Real>(f.spacing);
+  if (ratio != f.lattice.ratio) {
+    f.lattice = {ratio, static_cast<float>(lattice_excess(ratio) + disorder_excess), static_cast<float>(lattice_stress(ratio))};
+  }
   const std::size_t padded = padded_size(f.count);
   for (auto* array : {&f.position, &f.position_swap, &f.velocity, &f.acceleration, &f.force, &f.colour_gradient,
                       &f.direction, &f.residual, &f.shift}) {

@@ -17,6 +17,10 @@ struct LiquidFields {
   float volume = 0;            // V = m/rho0 = dx^3, m3
   float particle_mass = 0;     // kg
   float rest_density = 0;      // kg/m3
+  struct LatticeSums {         // kernel.h; kept while H/dx stays
+    Real ratio = 0;
+    float excess = 0, stress = 0;  // the excess with disorder_excess
+  } lattice;
   Neighbours neighbours;
   Boundary boundary;
 
@@ -45,7 +49,7 @@ struct LiquidFields {
   std::vector<std::uint8_t> surface;  // set by the class stage: 1 = free surface (pressure is prescribed there)
 };
 
-// Sizes every array for the sorted particles and copies position and velocity in.
+// Sizes every array for the sorted particles (sort_particles first: it sets the kernel) and copies position and velocity in.
 void begin_fields(LiquidFields& f, const Liquid& liquid);
 
 }  // namespace imbibe

@@ -94,8 +94,7 @@ void correct_gradients(LiquidFields& f, Real spray_filling) {
     for (std::size_t i = 3 * f.count; i < 3 * padded; ++i) (*array)[i] = {};
   }
   const auto spray = static_cast<float>(spray_filling);
-  const auto stress = static_cast<float>(
-      lattice_stress(static_cast<Real>(f.neighbours.kernel.support) / static_cast<Real>(f.spacing)));
+  const float stress = f.lattice.stress;
   for_each_slice(f.neighbours, [&](const Slice& s) {
     const Moments m = second_moments(f, s);
     for (std::size_t i = s.first; i < std::min(s.first + lanes, f.count); ++i) {

@@ -281,7 +281,7 @@ PressureReport project_velocity(LiquidFields& f, const PressureParams& params, R
   if (sheets != nullptr) sheets->book(f.pressure, dt_s);
   report.residual = relative();
   report.converged = report.residual < params.tolerance;
-  const float stress = f.rest_density * static_cast<float>(lattice_stress(static_cast<Real>(f.neighbours.kernel.support) / static_cast<Real>(f.spacing)));
+  const float stress = f.rest_density * f.lattice.stress;
   parallel_for(f.count, [&](std::size_t i) {
     const float k = f.pressure[i];
     warm[i] = k;
