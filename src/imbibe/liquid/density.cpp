@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "imbibe/liquid/classes.h"
 #include "imbibe/liquid/wall_push.h"
@@ -76,16 +77,33 @@ bool any_dry(const Boundary& boundary, const Slice& s, std::size_t lane) {
   return false;
 }
 
+// Whether a particle is among liquid: by the mean filling of its neighbours, 0.38 to 0.64 in
+// droplets of up to 20 particles, 0.70 and more in a drop of 8 spacings' radius.
+float liquid_around(std::span<const float> filling, const Slice& s, std::size_t lane) {
+  constexpr float droplet = 0.62f, drop = 0.70f;
+  float sum = 0, all = 0;
+  for (std::size_t k = lane; k < s.slots * lanes; k += lanes) all += s.slope[k], sum += s.slope[k] * filling[s.index[k]];
+  return all == 0 ? 0 : std::clamp((sum / all - droplet) / (drop - droplet), 0.0f, 1.0f);
+}
+
+// What is not among liquid touches a wall where it is as near as liquid's first layer is, not where a kernel ends.
+float touch(float distance, float support) {
+  constexpr float touches = 0.2f, free = 0.3f;
+  return std::clamp((free - distance / support) / (free - touches), 0.0f, 1.0f);
+}
+
 // Takes the walls that liquid does not reach out of what particle i sees.
-void leave_dry_walls(Boundary& boundary, std::size_t i, const Slice& s, float support) {
+void leave_dry_walls(Boundary& boundary, std::size_t i, const Slice& s, float support, std::span<const float> filling) {
   const std::span<WallSample> samples = boundary.samples(i);
   if (samples.empty()) return;
   std::array<float, walls_per_particle> contact;
   float least = 1;
   const bool dry_below = any_dry(boundary, s, i - s.first);
+  const float among = filling[i] > 0.85f ? 1 : liquid_around(filling, s, i - s.first);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     contact[k] = samples[k].seen_contact;
     if (dry_below) contact[k] = std::min(contact[k], contact_below(boundary, s, i - s.first, samples[k], support));
+    contact[k] *= among + (1 - among) * touch(samples[k].distance, support);
     samples[k].contact = contact[k];
     least = std::min(least, contact[k]);
   }
@@ -136,8 +154,8 @@ float density_error(float colour, float wall_lambda, float gradient_h) {
 
 namespace {
 
-// Sums over the pairs: f.colour, the gradient in f.colour_gradient, sum |V grad W|^2 in f.factor, and what each particle
-// sees of gaps.
+// Sums over the pairs: f.colour, the gradient in f.colour_gradient, sum |V grad W|^2 in f.factor, the filling with all walls in
+// f.applied, and what each particle sees of gaps.
 void sum_pairs(LiquidFields& f) {
   const Kernel kernel = f.neighbours.kernel;
   const float volume = f.volume;
@@ -159,21 +177,13 @@ void sum_pairs(LiquidFields& f) {
     }
     simd::store(&f.colour[s.first], own + volume * kernel.value_scale * sum);
     simd::store(&f.factor[s.first], square);
+    simd::store(&f.applied[s.first], simd::load(&f.colour[s.first]) + simd::load4(&f.boundary.wall[s.first]).w);
     simd::store4(&f.colour_gradient[s.first], gradient, Floats{});
     for (std::size_t p = s.first; p < std::min(s.first + lanes, f.count); ++p) {
       const Float4& n = f.colour_gradient[p];
       see_gaps(f.boundary, p, {n.x, n.y, n.z}, kernel.support);
     }
   });
-}
-
-// Whether a particle that seems to lack neighbours is among liquid: by the mean filling of its neighbours, 0.38 to 0.64 in
-// droplets of up to 20 particles, 0.70 and more in a drop of 8 spacings' radius.
-float liquid_around(const LiquidFields& f, const Slice& s, std::size_t lane) {
-  constexpr float droplet = 0.62f, drop = 0.70f;
-  float sum = 0, all = 0;
-  for (std::size_t k = lane; k < s.slots * lanes; k += lanes) all += s.slope[k], sum += s.slope[k] * f.filling[s.index[k]];
-  return all == 0 ? 0 : std::clamp((sum / all - droplet) / (drop - droplet), 0.0f, 1.0f);
 }
 
 }  // namespace
@@ -184,7 +194,7 @@ void compute_density(LiquidFields& f) {
   const float tiny = 1e-6f * kernel.inverse * kernel.inverse;  // a particle alone
   for_each_slice(f.neighbours, [&](const Slice& s) {
     const std::size_t i = s.first, last = std::min(i + lanes, f.count);
-    for (std::size_t p = i; p < last; ++p) leave_dry_walls(f.boundary, p, s, kernel.support);
+    for (std::size_t p = i; p < last; ++p) leave_dry_walls(f.boundary, p, s, kernel.support, f.applied);
     const Floats4 wall = simd::load4(&f.boundary.wall[i]), push = simd::load4(&f.boundary.push[i]);
     const Floats3 gradient = simd::load4(&f.colour_gradient[i]).xyz();
     const Floats colour = simd::load(&f.colour[i]), square = simd::load(&f.factor[i]);
@@ -199,7 +209,7 @@ void compute_density(LiquidFields& f) {
     for (std::size_t p = s.first; p < std::min(s.first + lanes, f.count); ++p) {
       float& error = f.density_error[p];
       error = density_error(f.colour[p], f.boundary.wall[p].w, f.colour_gradient[p].w);
-      if (error < -0.01f) error *= liquid_around(f, s, p - s.first);
+      if (error < -0.01f) error *= liquid_around(f.filling, s, p - s.first);
     }
   });
 }

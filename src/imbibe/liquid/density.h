@@ -10,7 +10,8 @@
 // wall on a cushion 1.5 spacings high). Lambda, G and P of each wall near a particle are scaled by its contact, 1 where
 // (n + G).m H < 0.5 (n + G all liquid and walls around, m out of this wall) and 0 above 0.9, as under a free surface. A
 // drop in a corner may stand on one wall and not yet touch the other. Where the liquid between a particle and the wall sees
-// a gap, that particle does too: its contact is at most the mean of its neighbours' that are nearer to the wall.
+// a gap, that particle does too: its contact is at most the mean of its neighbours' that are nearer to the wall. And what is not
+// among liquid (below) touches a wall only where it is as near as a first layer, 0.2 to 0.3 H.
 //
 // Air completion. A particle at a free surface misses neighbours, so its filling says nothing about its spacing. The
 // missing part is inferred from the colour gradient: a flat surface at depth d gives |n| = A(d) and misses lambda(d)

@@ -96,7 +96,7 @@ std::vector<Real> dense_step(const WettingModel& m, const std::vector<Real>& sta
     for (Index i = 0; i < n; ++i)
       for (Index k = m.row_start[i]; k < m.row_start[i + 1]; ++k) {
         const Index j = m.row_other[k];
-        if (j < i) continue;
+        if (j < i || j >= n) continue;  // once a link; the pores behind the segments are shut and no unknowns
         const Sloped x = psi(i, s[i]), y = psi(j, s[j]);
         const Real conductance = m.links[m.row_link[k]].conductance, flow = dt * conductance * (x.value - y.value);
         residual[i] += flow, residual[j] -= flow;
