@@ -77,8 +77,8 @@ bool any_dry(const Boundary& boundary, const Slice& s, std::size_t lane) {
   return false;
 }
 
-// Whether a particle is among liquid: by the mean filling of its neighbours, 0.38 to 0.64 in
-// droplets of up to 20 particles, 0.70 and more in a drop of 8 spacings' radius.
+// Whether a particle is among liquid: by the mean filling of its neighbours, 0.38 to 0.64 in droplets of up to 20 particles,
+// 0.70 and more in a drop of 8 spacings' radius.
 float liquid_around(std::span<const float> filling, const Slice& s, std::size_t lane) {
   constexpr float droplet = 0.62f, drop = 0.70f;
   float sum = 0, all = 0;
