@@ -27,7 +27,7 @@
 // only among particles that are themselves mostly surrounded (mean filling of the neighbours 0.62 to 0.70): followed, such
 // errors made droplets swim over a wall without ever reaching it.
 // Assumes a surface flat over H; for a sphere of radius 8 dx the bias is below 1.5 % of the volume.
-// Tested in tests/liquid/density_test.cpp.
+// Tested in tests/liquid/density_test.cpp; droplets in tests/liquid/droplet_test.cpp.
 #pragma once
 
 #include "imbibe/liquid/fields.h"
