@@ -17,6 +17,22 @@ Real moved_strain(Real found, Real change, const PieceMaterial& m, Real dt) {
   return dt / (dt + m.damping) * std::abs(found + change / (dt * m.stiffness));
 }
 
+// An edge as it will be at the end of the step if nothing acts on it.
+struct EdgeAhead {
+  Real b, wi, wj;  // 1/m, its weight at the second node; inverse masses of its nodes, 1/kg
+  Vec3 rate, ahead;
+  Real length;     // of ahead, 1 at rest
+};
+
+template <class Piece>
+EdgeAhead edge_ahead(const Piece& piece, const NodeMotion& nodes, Real dt) {
+  const auto [i, j] = piece.node;
+  const Real b = piece.weight[1];
+  const Vec3 rate = b * (nodes.velocity[j] - nodes.velocity[i]);
+  const Vec3 ahead = b * (nodes.position[j] - nodes.position[i]) + dt * rate;
+  return {b, nodes.inverse_mass[i], nodes.inverse_mass[j], rate, ahead, norm(ahead)};
+}
+
 // One pass over the edges [first, end) of one thread: the changes of their impulses.
 template <class Piece>
 PassOutcome solve_stretch(const ThreadList<Piece>& threads, std::size_t first, std::size_t end,
@@ -26,12 +42,7 @@ PassOutcome solve_stretch(const ThreadList<Piece>& threads, std::size_t first, s
   Real b_before = 0;
   Vec3 direction_before;
   for (std::size_t e = first; e < end; ++e) {
-    const Piece& piece = threads.pieces[e];
-    const auto [i, j] = piece.node;
-    const Real b = piece.weight[1], wi = nodes.inverse_mass[i], wj = nodes.inverse_mass[j];
-    const Vec3 rate = b * (nodes.velocity[j] - nodes.velocity[i]);
-    const Vec3 ahead = b * (nodes.position[j] - nodes.position[i]) + dt * rate;
-    const Real length = norm(ahead);
+    const auto [b, wi, wj, rate, ahead, length] = edge_ahead(threads.pieces[e], nodes, dt);
     const Vec3 direction = length > 0 ? ahead / length : direction_before;
     const PieceMaterial& m = materials[e];
     const Real reach = dt + m.damping;
@@ -107,12 +118,7 @@ PassOutcome solve_tense_stretch(const ThreadList<Piece>& threads, std::size_t fi
   const ThreadSolve::Block* before = &none;
   Real b_before = 0;
   for (std::size_t e = first; e < end; ++e) {
-    const Piece& piece = threads.pieces[e];
-    const auto [i, j] = piece.node;
-    const Real b = piece.weight[1], wi = nodes.inverse_mass[i], wj = nodes.inverse_mass[j];
-    const Vec3 rate = b * (nodes.velocity[j] - nodes.velocity[i]);
-    const Vec3 ahead = b * (nodes.position[j] - nodes.position[i]) + dt * rate;
-    const Real length = norm(ahead);
+    const auto [b, wi, wj, rate, ahead, length] = edge_ahead(threads.pieces[e], nodes, dt);
     const Vec3 direction = length > 0 ? ahead / length : work.direction[e];
     const PieceMaterial& m = materials[e];
     const Real soft = dt * m.stiffness, strain = length - 1 + m.damping * dot(direction, rate);

@@ -1,9 +1,9 @@
 // When the free liquid makes no SPH steps: it rests, and when it moves again.
 //
 // It rests when its shape does: centre and extents have stayed within a twentieth of a particle spacing for half the
-// capillary time sqrt(rho R^3 / gamma) of a drop of all the liquid, and for the time in which it would fall a tenth. Particle speeds are no measure: a resting drop keeps
-// a residual motion of 2-10 % of the capillary velocity inside. Falling, spreading, oscillating or running liquid leaves
-// the band; so does a drop from which the textile drinks fast.
+// capillary time sqrt(rho R^3 / gamma) of a drop of all the liquid, and for the time in which it would fall a tenth.
+// Particle speeds are no measure: a resting drop keeps a residual motion of 2-10 % of the capillary velocity inside. Falling,
+// spreading, oscillating or running liquid leaves the band; so does a drop from which the textile drinks fast.
 // Sums over all the liquid do not show what little of it does, so then every connected blob is looked at, once per
 // window: one that nothing holds (no particle of it within a spacing of a solid or a sheet) falls, and one that slides
 // faster than a tenth of its own capillary velocity runs. Then nothing rests, and the window begins anew.
