@@ -209,6 +209,7 @@ void compute_density(LiquidFields& f) {
     for (std::size_t p = s.first; p < std::min(s.first + lanes, f.count); ++p) {
       float& error = f.density_error[p];
       error = density_error(f.colour[p], f.boundary.wall[p].w, f.colour_gradient[p].w);
+      // Up to 1 % is what disorder and the completion's own bias make of any surface; a look around costs a list of neighbours.
       if (error < -0.01f) error *= liquid_around(f.filling, s, p - s.first);
     }
   });

@@ -19,8 +19,9 @@
 //   lambda_a = lambda(A^-1(|grad lambda_a|)),   error e = (1 - lambda)(f + lambda_a - 1),   f = C/(1 - lambda)
 //   grad lambda_a = -(n + f G)/(1 - lambda), from C = (1 - lambda)(1 - lambda_a): wall and air share the kernel like
 //   half-spaces that cross at right angles
-// e = 0 for an evenly spaced flat surface at ANY depth (within 0.2 %: slopes below 0.07/H are disorder, not air). At a contact line, where wall and air meet at any angle, only
-// compression counts: e = max(0, C + lambda - 1). (Completed there as well, a 120 degree drop stood at 130 to 135.)
+// e = 0 for an evenly spaced flat surface at ANY depth (within 0.2 %: slopes below 0.07/H are disorder, not air). At a contact
+// line, where wall and air meet at any angle, only compression counts: e = max(0, C + lambda - 1). (Completed there as well,
+// a 120 degree drop stood at 130 to 135.)
 // This gives surface particles a density that does not drift (without it a drop of water gains energy from its own
 // oscillation: docs/decisions/0002-surface-tension-in-the-incompressible-solver.md).
 // A droplet of some ten particles has no surface flat over H: its middle seems to lack 13 % for good. What is missing counts
