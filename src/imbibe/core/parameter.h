@@ -33,6 +33,20 @@ struct ParameterInfo {
   const char* help = "";
 };
 
+// Describes in `body` what is read only where `read` holds (yarns, not of a cloth of cells). Readers, writers and tables know
+// all keys all the same; a visitor that has a member `reads` learns of it there.
+template <class V, class Body>
+void read_when(V& v, bool read, Body&& body) {
+  if constexpr (requires { v.reads; }) {
+    const bool around = v.reads;
+    v.reads = around && read;
+    body();
+    v.reads = around;
+  } else {
+    body();
+  }
+}
+
 template <class Enum>
 using Choices = std::vector<std::pair<const char*, Enum>>;
 

@@ -69,34 +69,41 @@ struct FabricSpec {
   std::filesystem::path folder;
 };
 
+// woven: false of a cloth of cells, which has an extent and an areal mass and no yarns.
 template <class V>
-void describe(V& v, FabricSpec& p) {
+void describe(V& v, FabricSpec& p, bool woven = true) {
   v.value("size", p.size, {.unit = "m", .shown = "mm", .min = 0, .max = 100, .above_min = true,
                            .help = "extent along the weft (x) and along the warp (y)"});
-  v.value("weave", p.weave,
-          {.help = "plain | twill 2/1 [left] | satin 5/2 | sateen 5/2 | basket 2/2 | rows like \"10 01\" | a .wif file"});
-  v.value("weave_rows", p.weave_rows, {.help = "rows of 0 and 1, one per pick, 1 = warp on the face; in place of weave"});
-  v.group("warp", p.warp, "the yarns along y");
-  v.group("weft", p.weft, "the yarns along x");
-  v.list("stripes", p.stripes, "other yarns by index");
-  v.list("layers", p.layers, "several layers of the fabric lying on each other, from above downwards; default: one");
-  v.value("layer_gap", p.layer_gap,
-          {.unit = "m", .shown = "um", .min = 0, .max = 1e-3,
-           .help = "distance of layers that lie on each other, between their highest points; 0: they touch"});
-  v.value("thickness", p.thickness,
-          {.unit = "m", .shown = "mm", .min = 0, .max = 1, .above_min = true,
-           .help = "thickness of the slab whose voids are the pores, of one layer; default from the yarns, 2 (r_warp + r_weft)"});
+  read_when(v, woven, [&] {
+    v.value("weave", p.weave,
+            {.help = "plain | twill 2/1 [left] | satin 5/2 | sateen 5/2 | basket 2/2 | rows like \"10 01\" | a .wif file"});
+    v.value("weave_rows", p.weave_rows, {.help = "rows of 0 and 1, one per pick, 1 = warp on the face; in place of weave"});
+    v.group("warp", p.warp, "the yarns along y");
+    v.group("weft", p.weft, "the yarns along x");
+    v.list("stripes", p.stripes, "other yarns by index");
+    v.list("layers", p.layers, "several layers of the fabric lying on each other, from above downwards; default: one");
+    v.value("layer_gap", p.layer_gap,
+            {.unit = "m", .shown = "um", .min = 0, .max = 1e-3,
+             .help = "distance of layers that lie on each other, between their highest points; 0: they touch"});
+    v.value("thickness", p.thickness,
+            {.unit = "m", .shown = "mm", .min = 0, .max = 1, .above_min = true,
+             .help = "thickness of the slab whose voids are the pores, of one layer; default from the yarns, "
+                     "2 (r_warp + r_weft)"});
+  });
   v.value("areal_mass", p.areal_mass,
           {.unit = "kg/m2", .shown = "g/m2", .min = 0, .max = 100, .above_min = true,
            .help = "wanted mass per area of one layer: both densities are scaled alike to reach it"});
-  v.value("porosity", p.porosity, {.min = 0, .max = 1, .above_min = true, .help = "wanted porosity between the yarns"});
-  v.choice("porosity_by", p.porosity_by,
-           Choices<PorosityBy>{{"thickness", PorosityBy::thickness}, {"pitch", PorosityBy::pitch}},
-           "what is changed to reach the wanted porosity");
-  v.value("warp_crimp_share", p.warp_crimp_share,
-          {.min = 0, .max = 1, .help = "share of the warp in the crimp height; default: both families flush with both faces"});
-  v.value("points_per_segment", p.points_per_segment,
-          {.min = 2, .max = 64, .help = "steps of the centre line per half loop; an even number"});
+  read_when(v, woven, [&] {
+    v.value("porosity", p.porosity, {.min = 0, .max = 1, .above_min = true, .help = "wanted porosity between the yarns"});
+    v.choice("porosity_by", p.porosity_by,
+             Choices<PorosityBy>{{"thickness", PorosityBy::thickness}, {"pitch", PorosityBy::pitch}},
+             "what is changed to reach the wanted porosity");
+    v.value("warp_crimp_share", p.warp_crimp_share,
+            {.min = 0, .max = 1,
+             .help = "share of the warp in the crimp height; default: both families flush with both faces"});
+    v.value("points_per_segment", p.points_per_segment,
+            {.min = 2, .max = 64, .help = "steps of the centre line per half loop; an even number"});
+  });
 }
 
 struct Fabric {

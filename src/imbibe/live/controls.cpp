@@ -41,9 +41,11 @@ void append_numbers(std::vector<Real>& out, const std::optional<T>& value) {
   if (value) append_numbers(out, *value);
 }
 
-// Visits a scene that has values, where ParameterTable describes the scenes that there may be.
+// Visits a scene that has values, where ParameterTable describes the scenes that there may be. What its models do not read is
+// left out: controls without an effect would only mislead.
 class ControlList {
  public:
+  bool reads = true;  // parameter.h
   ControlList(std::string prefix, std::vector<Control>& out) : prefix_(std::move(prefix)), out_(out) {}
 
   template <class T>
@@ -67,6 +69,7 @@ class ControlList {
   void group(const char* name, P& params, const char* help = "") {
     header(name, help);
     ControlList inner(prefix_ + name + ".", out_);
+    inner.reads = reads;
     describe(inner, params);
   }
   template <class P>
@@ -87,6 +90,7 @@ class ControlList {
     add(std::move(control));
   }
   void add(Control control) {
+    if (!reads) return;
     control.effect = effect_of(control.row.path);
     out_.push_back(std::move(control));
   }
@@ -127,25 +131,6 @@ std::vector<StandIn> stand_ins(const Scene& scene, const World& world) {
   return out;
 }
 
-// Keys of a textile that nothing reads as its models are: controls without an effect would only mislead.
-bool is_read(const Scene& scene, const std::string& path) {
-  constexpr std::array only_of_yarns{"layer_gap", "layers", "stripes", "warp", "weft", "warp_contact_angle", "weft_contact_angle",
-                                     "receding_angle", "regain", "start", "contact", "weave", "weave_rows", "thickness",
-                                     "porosity", "porosity_by", "warp_crimp_share", "points_per_segment", "wetting.network"};
-  for (std::size_t i = 0; i < scene.textiles.size(); ++i) {
-    const TextileSpec& spec = scene.textiles[i];
-    const std::string prefix = fmt::format("textiles[{}].", i);
-    if (!path.starts_with(prefix)) continue;
-    const std::string_view key = std::string_view(path).substr(prefix.size());
-    const auto is = [&](std::string_view name) {
-      return key.starts_with(name) && (key.size() == name.size() || key[name.size()] == '.' || key[name.size()] == '[');
-    };
-    if (!spec.wetting.is_cells()) return !is("wetting.cells");
-    return std::none_of(only_of_yarns.begin(), only_of_yarns.end(), is);
-  }
-  return true;
-}
-
 const char* effect_name(Effect effect) {
   return effect == Effect::next_step ? "next step" : effect == Effect::restart ? "restart" : "never";
 }
@@ -166,7 +151,7 @@ std::string controls_json(const Scene& scene, const World& world, const Library&
   for (const auto& fibre : library.fibres.records) fibres.push_back(fibre.fibre.name);
   Json rows = Json::array();
   for (const Control& c : controls_of(scene)) {
-    if (c.effect == Effect::never || !is_read(scene, c.row.path)) continue;
+    if (c.effect == Effect::never) continue;
     Json row{{"path", c.row.path}, {"help", c.row.help}, {"effect", effect_name(c.effect)}};
     if (c.row.kind == RowKind::group) {
       row["kind"] = "group";

@@ -199,8 +199,8 @@ void describe(V& v, WettingSpec& p) {
   if constexpr (requires { v.short_form(""); }) v.short_form("kind");
   v.choice("kind", p.kind, {{"network", WettingKind::network}, {"cells", WettingKind::cells}},
            "network: yarn segments and pores; cells: a cell of liquid parcels at each node of the sheet (no weave needed)");
-  v.group("network", p.network, "models and numbers of the yarn and pore network");
-  v.group("cells", p.cells, "seed B's cells; giving this map chooses them");
+  read_when(v, !p.is_cells(), [&] { v.group("network", p.network, "models and numbers of the yarn and pore network"); });
+  read_when(v, p.is_cells(), [&] { v.group("cells", p.cells, "seed B's cells; giving this map chooses them"); });
 }
 
 // A wet place of a textile at the start.
@@ -256,33 +256,38 @@ struct TextileSpec {
 
 template <class V>
 void describe(V& v, TextileSpec& p) {
+  const bool woven = !p.wetting.is_cells();
   v.value("name", p.name, {.help = "name of its files and of its part of the report"});
   v.value("centre", p.centre,
           {.unit = "m", .shown = "mm", .min = -farthest, .max = farthest, .help = "centre of its mid-plane"});
   v.value("weft_direction", p.weft_direction, {.min = -1e6, .max = 1e6, .help = "along the weft yarns; any length"});
   v.value("warp_direction", p.warp_direction,
           {.min = -1e6, .max = 1e6, .help = "along the warp yarns, square to the weft; the face is weft x warp"});
-  describe(v, p.fabric);
+  describe(v, p.fabric, woven);
   v.value("contact_angle", p.contact_angle,
           {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
            .help = "advancing contact angle of the liquid on every fibre; default: each fibre's own, which is water's"});
-  v.value("warp_contact_angle", p.warp_contact_angle,
-          {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
-           .help = "advancing contact angle on the fibres of the warp alone; default: contact_angle"});
-  v.value("weft_contact_angle", p.weft_contact_angle,
-          {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
-           .help = "advancing contact angle on the fibres of the weft alone; default: contact_angle"});
-  v.value("receding_angle", p.receding_angle,
-          {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
-           .help = "receding contact angle on every fibre; never above its advancing one"});
-  v.value("regain", p.regain,
-          {.unit = "1", .shown = "%", .min = 0, .max = 1,
-           .help = "water in its fibres per dry mass where no liquid touches them: conditioned to it at the start, and again "
-                   "whenever it is changed (water from or to the air); default: in balance with start.humidity or the air"});
+  read_when(v, woven, [&] {
+    v.value("warp_contact_angle", p.warp_contact_angle,
+            {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
+             .help = "advancing contact angle on the fibres of the warp alone; default: contact_angle"});
+    v.value("weft_contact_angle", p.weft_contact_angle,
+            {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
+             .help = "advancing contact angle on the fibres of the weft alone; default: contact_angle"});
+    v.value("receding_angle", p.receding_angle,
+            {.unit = "rad", .shown = "deg", .min = 0, .max = pi,
+             .help = "receding contact angle on every fibre; never above its advancing one"});
+    v.value("regain", p.regain,
+            {.unit = "1", .shown = "%", .min = 0, .max = 1,
+             .help = "water in its fibres per dry mass where no liquid touches them: conditioned to it at the start, and again "
+                     "whenever it is changed (water from or to the air); default: in balance with start.humidity or the air"});
+  });
   v.group("sheet", p.sheet, "how the cloth is held");
   v.group("wetting", p.wetting, "how it takes liquid up");
-  v.group("contact", p.contact, "how particles that hit its yarns bounce");
-  v.group("start", p.start, "what it holds at the start");
+  read_when(v, woven, [&] {
+    v.group("contact", p.contact, "how particles that hit its yarns bounce");
+    v.group("start", p.start, "what it holds at the start");
+  });
   v.list("reservoirs", p.reservoirs, "liquid that stands against parts of it and never runs out");
 }
 
