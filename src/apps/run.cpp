@@ -182,7 +182,7 @@ class RunSession {
       const RunEnd end = run(world_, plan, hooks);
       const auto start = std::chrono::steady_clock::now();
       writer_.finish();
-      waited_s_ += seconds_since(start);
+      finishing_s_ = seconds_since(start);
       return end;
     } catch (const OutputError&) {
       writer_.abandon();
@@ -251,9 +251,12 @@ class RunSession {
         folder_->count(pictures_->add(frame_from_world(*copy, title), number));
       if (checkpoint) folder_->write_checkpoint(*copy);
       check_disk(*copy, most);
-    });
+    }, is_large());
     waited_s_ += seconds_since(start);
   }
+
+  // Copies that wait for their pictures may make a run a few times as large: not one that fills a laptop by itself.
+  static bool is_large() { return memory_in_use() > 1e9; }
 
   bool is_output_time(const World& world) const {
     const Real intervals = world.time / output_interval(scene_);
@@ -269,7 +272,8 @@ class RunSession {
   void checkpoint_when_due(const World& world) {
     if (!checkpoint_due()) return;
     const auto start = std::chrono::steady_clock::now();
-    writer_.post([this, copy = std::make_shared<const World>(world)] { folder_->write_checkpoint(*copy); });
+    writer_.post([this, copy = std::make_shared<const World>(world)] { folder_->write_checkpoint(*copy); },
+                 is_large());
     waited_s_ += seconds_since(start);
   }
 
@@ -308,7 +312,7 @@ class RunSession {
                 seconds_since(started_));
     std::printf("  of it       liquid %.1f s (%llu steps), network %.1f s (%llu steps), waiting for output %.1f s\n", liquid_s_,
                 static_cast<unsigned long long>(moved_), wetting_s_, static_cast<unsigned long long>(wetted_), waited_s_);
-    std::printf("  beside it   files and pictures %.1f s\n", writer_.working_s());
+    std::printf("  beside it   files and pictures %.1f s, of it %.1f s after the last step\n", writer_.working_s(), finishing_s_);
     if (moved_ > 0)
       std::printf("  liquid      density error %.2g %% (mean), %.2g %% in the worst step, of it compression %.2g %%; of one particle up to %.2g %%\n",
                   100 * world_.density.mean(), 100 * world_.density.worst_mean, 100 * world_.density.mean_compression(),
@@ -351,7 +355,7 @@ class RunSession {
   std::optional<ChangeReplay> changes_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RunPictures> pictures_;
-  double liquid_s_ = 0, wetting_s_ = 0, waited_s_ = 0;
+  double liquid_s_ = 0, wetting_s_ = 0, waited_s_ = 0, finishing_s_ = 0;
   std::uint64_t moved_ = 0, wetted_ = 0;
   ContactCounts contact_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), last_checkpoint_ = started_,

@@ -52,6 +52,22 @@ TEST(BackgroundWriter, no_more_jobs_wait_than_allowed) {
   EXPECT_EQ(posted, 6);
 }
 
+TEST(BackgroundWriter, of_a_large_run_fewer_jobs_wait) {
+  Gate gate;
+  std::atomic<int> posted = 0;
+  BackgroundWriter writer(20, 2);
+  std::thread run([&] {
+    for (int i = 0; i < 6; ++i) writer.post([&] { gate.wait(); }, true), ++posted;
+  });
+  while (posted < 3) std::this_thread::yield();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_LE(posted, 3);
+  gate.open = true;
+  run.join();
+  writer.finish();
+  EXPECT_EQ(posted, 6);
+}
+
 TEST(BackgroundWriter, what_a_job_throws_reaches_the_run_and_nothing_is_written_after_it) {
   std::atomic<bool> later = false;
   Gate gate;

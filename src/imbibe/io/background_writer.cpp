@@ -1,5 +1,6 @@
 #include "imbibe/io/background_writer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -10,8 +11,8 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 }  // namespace
 
-BackgroundWriter::BackgroundWriter(std::size_t most_waiting)
-    : most_waiting_(most_waiting), thread_([this] { work(); }) {}
+BackgroundWriter::BackgroundWriter(std::size_t most_waiting, std::size_t few_waiting)
+    : most_waiting_(most_waiting), few_waiting_(std::min(few_waiting, most_waiting)), thread_([this] { work(); }) {}
 
 BackgroundWriter::~BackgroundWriter() {
   {
@@ -56,10 +57,10 @@ void BackgroundWriter::rethrow(std::unique_lock<std::mutex>& lock) {
   std::rethrow_exception(thrown);
 }
 
-void BackgroundWriter::post(std::function<void()> job) {
+void BackgroundWriter::post(std::function<void()> job, bool large) {
   std::unique_lock lock(mutex_);
   const auto start = Clock::now();
-  changed_.wait(lock, [&] { return jobs_.size() < most_waiting_ || failed_; });
+  changed_.wait(lock, [&] { return jobs_.size() < (large ? few_waiting_ : most_waiting_) || failed_; });
   waited_s_ += seconds_since(start);
   rethrow(lock);
   if (failed_) return;  // already told; nothing may come after what was lost

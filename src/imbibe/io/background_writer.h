@@ -2,9 +2,10 @@
 // own copy of what it writes, and goes on.
 //
 // Jobs run one after the other in the order they were posted, so what the run folder promises about order holds. Memory is
-// bounded: at most `most_waiting` jobs wait; posting one more waits for room (`waited_s` adds up what the run lost by it).
+// bounded: at most `most_waiting` jobs wait, and `few_waiting` when the run says that it is large already; posting one more
+// waits for room (`waited_s` adds up what the run lost by it).
 // A job that throws ends the writing: jobs after it are dropped, and its exception comes out of the next post() or
-// finish(), in the run's own thread. So a full disk stops the run a step or two later than it did without a thread.
+// finish(), in the run's own thread. So a full disk stops the run a few outputs later than it did without a thread.
 // Tested in tests/io/background_writer_test.cpp.
 #pragma once
 
@@ -20,12 +21,12 @@ namespace imbibe {
 
 class BackgroundWriter {
  public:
-  explicit BackgroundWriter(std::size_t most_waiting = 2);
+  explicit BackgroundWriter(std::size_t most_waiting = 16, std::size_t few_waiting = 2);
   ~BackgroundWriter();  // does what waits, unless a job has thrown
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;
 
-  void post(std::function<void()> job);
+  void post(std::function<void()> job, bool large = false);
 
   // Returns when all posted jobs are done; throws what one of them threw, once.
   void finish();
@@ -40,7 +41,7 @@ class BackgroundWriter {
   void work();
   void rethrow(std::unique_lock<std::mutex>& lock);
 
-  const std::size_t most_waiting_;
+  const std::size_t most_waiting_, few_waiting_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> jobs_;
