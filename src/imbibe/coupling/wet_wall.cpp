@@ -1,6 +1,6 @@
 #include "imbibe/coupling/wet_wall.h"
 
-#include "imbibe/core/portable.h"
+#include <cmath>
 
 namespace imbibe {
 
@@ -16,7 +16,9 @@ std::function<WallAngles(const Vec3&)> wet_angles(const YarnNetwork& network, co
     if (std::isfinite(p.z)) {
       map.near(p.x, p.y, p.z >= 0, [&](Index k) {
         const Vec3& c = network.node_centre(k);
-        const Real w = face_kernel(portable::hypot(p.x - c.x, p.y - c.y), map.reach);
+        const Real x = p.x - c.x, y = p.y - c.y, d2 = x * x + y * y;
+        if (d2 >= map.reach * map.reach) return;  // two of three: the bins reach farther than the kernel
+        const Real w = face_kernel(std::sqrt(d2), map.reach);
         advancing += w * cos_wet_face(map.cos_advancing[k], saturation[k]);
         receding += w * cos_wet_face(map.cos_receding[k], saturation[k]);
         weight += w;
