@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "imbibe/cloth/shear.h"
 #include "imbibe/core/parallel.h"
 
 namespace imbibe {
@@ -27,8 +28,9 @@ PassOutcome pass(const PieceList<Piece>& list, std::vector<PassOutcome>& tiles, 
   return all;
 }
 
-// The same for groups of neighbouring pieces, whose outcomes of the pass before say which of them are still to be solved.
-template <class Piece, class Solve>
+// The same for groups of neighbouring pieces, whose outcomes of the pass before say which of them are still to be solved;
+// solve(first piece, how many, their first number, outcome).
+template <std::size_t together, class Piece, class Solve>
 PassOutcome pass(const PieceList<Piece>& list, const PassScope& scope, std::vector<PassOutcome>& groups, Solve&& solve) {
   constexpr std::size_t group = 32;
   std::size_t before = 0;
@@ -43,7 +45,8 @@ PassOutcome pass(const PieceList<Piece>& list, const PassScope& scope, std::vect
       }
       outcome = {};
       const std::size_t begin = first + g * group, end = std::min(begin + group, first + count);
-      for (std::size_t k = begin; k < end; ++k) solve(list.pieces[k], k, outcome);
+      for (std::size_t k = begin; k < end; k += together)
+        solve(&list.pieces[k], std::min(together, end - k), k, outcome);
       outcome.solved = end - begin;
     }, tile / group);
     before += here;
@@ -147,15 +150,20 @@ InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params,
     return all;
   }
   const auto shear = [&](const std::vector<PieceMaterial>& materials, std::vector<Real>& given) {
-    return [&, dt](const auto& piece, std::size_t k, PassOutcome& outcome) {
-      const Real change = solve_shear(piece, nodes, materials[k].stiffness, materials[k].damping, dt, given[k]);
-      outcome.add(shear_weight * change, piece.area);
+    return [&, dt](const auto* pieces, std::size_t count, std::size_t k, PassOutcome& outcome) {
+      Reals changed;
+      solve_shear(pieces, count, nodes, &materials[k], dt, &given[k], changed);
+      for (std::size_t l = 0; l < count; ++l) outcome.add(shear_weight * changed[l], pieces[l].area);
     };
   };
+  const auto stretch_alone = [&](const auto* piece, std::size_t, std::size_t k, PassOutcome& outcome) {
+    stretch(work.triangle_stretch)(*piece, k, outcome);
+  };
   // The stiffest last: what is solved last holds best.
-  all.relaxed += pass(t.cell_shear, scope, work.cell_shear_groups, shear(work.cell_shear, work.given_cell_shear));
-  all.relaxed += pass(t.triangle_shear, scope, work.triangle_shear_groups, shear(work.triangle_shear, work.given_triangle_shear));
-  all.relaxed += pass(t.triangle_stretch, scope, work.triangle_stretch_groups, stretch(work.triangle_stretch));
+  all.relaxed += pass<shear_lanes>(t.cell_shear, scope, work.cell_shear_groups, shear(work.cell_shear, work.given_cell_shear));
+  all.relaxed += pass<shear_lanes>(t.triangle_shear, scope, work.triangle_shear_groups,
+                                   shear(work.triangle_shear, work.given_triangle_shear));
+  all.relaxed += pass<1>(t.triangle_stretch, scope, work.triangle_stretch_groups, stretch_alone);
   all.threads = solve_thread_stretch(t.thread_stretch, work.thread_stretch, nodes, dt, work.threads, scope);
   const std::size_t pieces = t.cell_shear.pieces.size() + t.triangle_shear.pieces.size() + t.triangle_stretch.pieces.size() +
                              t.thread_stretch.pieces.size();

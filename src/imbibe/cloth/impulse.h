@@ -129,36 +129,6 @@ void correct_stretch(const Piece& piece, const NodeMotion& nodes, Real limit, Re
   for (std::size_t k = 0; k < piece.node.size(); ++k) nodes.give(piece.node[k], piece.weight[k] * impulse);
 }
 
-// As solve_stretch; returns the change of the angle.
-template <std::size_t N>
-inline Real solve_shear(const ShearPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt, Real& given) {
-  const Vec3 x = nodes.position[piece.node[0]], v = nodes.velocity[piece.node[0]];
-  std::array<Vec3, N> rate;  // beside the first node
-  Vec3 a, b;
-  for (std::size_t k = 1; k < N; ++k) {
-    rate[k] = nodes.velocity[piece.node[k]] - v;
-    const Vec3 ahead = (nodes.position[piece.node[k]] - x) + dt * rate[k];
-    a += piece.weft[k] * ahead, b += piece.warp[k] * ahead;
-  }
-  const Real squared_a = squared_norm(a), squared_b = squared_norm(b);
-  if (!(squared_a > 0) || !(squared_b > 0)) return 0;
-  const Real inverse_a = 1 / std::sqrt(squared_a), inverse_b = 1 / std::sqrt(squared_b);
-  const Vec3 ua = inverse_a * a, ub = inverse_b * b;
-  const Real cosine = dot(ua, ub);
-  const Vec3 gradient_a = inverse_a * (ub - cosine * ua), gradient_b = inverse_b * (ua - cosine * ub);
-  std::array<Vec3, N> gradient;
-  Real mobility = 0, change = 0;
-  for (std::size_t k = 0; k < N; ++k) {
-    gradient[k] = piece.weft[k] * gradient_a + piece.warp[k] * gradient_b;
-    mobility += nodes.inverse_mass[piece.node[k]] * squared_norm(gradient[k]);
-    if (k > 0) change += dot(gradient[k], rate[k]);
-  }
-  const Real impulse = elastic_impulse(cosine, change, stiffness, damping, mobility, dt, given);
-  for (std::size_t k = 0; k < N; ++k) nodes.give(piece.node[k], impulse * gradient[k]);
-  given += impulse;
-  return std::abs(impulse) * mobility * dt;
-}
-
 template <std::size_t N>
 void solve_bend(const BendPiece<N>& piece, const NodeMotion& nodes, Real stiffness, Real damping, Real dt) {
   const LinearForm form = linear_form(nodes, piece.node, piece.weight);
