@@ -4,10 +4,10 @@
 //   C = cos(angle between weft and warp) = u_a . u_b,  a = sum weft x~, b = sum warp x~,  u = a/|a|
 //   grad_k C = weft_k (u_b - C u_a)/|a| + warp_k (u_a - C u_b)/|b|
 // and the impulse of elastic_impulse (impulse.h). Pieces relaxed one by one took more than half of a cloth's time.
-// Tested in tests/cloth/threads_test.cpp (against the energy's differences) and by the closed forms.
+// Tested in tests/cloth/shear_test.cpp and by the closed forms.
 #pragma once
 
-#include <cstring>
+#include <array>
 
 #include "imbibe/cloth/impulse.h"
 
@@ -50,30 +50,27 @@ inline void solve_shear(const ShearPiece<N>* pieces, std::size_t count, const No
     a += weft[k] * ahead, b += warp[k] * ahead;
   }
   const Reals squared_a = squared_norm(a), squared_b = squared_norm(b);
-  const Reals inverse_a = 1 / root(squared_a), inverse_b = 1 / root(squared_b);
+  const auto has_directions = squared_a * squared_b > 0;  // else it is folded to a line: no gradient
+  const Reals inverse_a = has_directions ? 1 / root(squared_a) : none, inverse_b = has_directions ? 1 / root(squared_b) : none;
   const Reals3 ua = inverse_a * a, ub = inverse_b * b;
   const Reals cosine = dot(ua, ub);
   const Reals3 gradient_a = inverse_a * (ub - cosine * ua), gradient_b = inverse_b * (ua - cosine * ub);
   std::array<Reals3, N> gradient;
   Reals mobility{}, change{};
-  std::array<Reals, N> inverse_mass;
   for (std::size_t k = 0; k < N; ++k) {
-    inverse_mass[k] = of_pieces([&](const ShearPiece<N>& p) { return nodes.inverse_mass[p.node[k]]; });
+    const Reals w = of_pieces([&](const ShearPiece<N>& p) { return nodes.inverse_mass[p.node[k]]; });
     gradient[k] = weft[k] * gradient_a + warp[k] * gradient_b;
-    mobility += inverse_mass[k] * squared_norm(gradient[k]);
+    mobility += w * squared_norm(gradient[k]);
     if (k > 0) change += dot(gradient[k], rate[k]);
   }
   const Reals stiffness{materials[0].stiffness, materials[lane(1)].stiffness, materials[lane(2)].stiffness, materials[lane(3)].stiffness};
   const Reals damping{materials[0].damping, materials[lane(1)].damping, materials[lane(2)].damping, materials[lane(3)].damping};
   const Reals before{given[0], given[lane(1)], given[lane(2)], given[lane(3)]};
   const Reals soft = step * stiffness;
-  const Reals found = ((cosine + change * damping) * soft + before) * (-1 / (1 + soft * (step + damping) * mobility));
-  const auto has_directions = squared_a * squared_b > 0;  // else the piece is folded to a line
-  const Reals impulse = has_directions ? found : none;
+  const Reals impulse = ((cosine + change * damping) * soft + before) * (-1 / (1 + soft * (step + damping) * mobility));
   for (std::size_t k = 0; k < N; ++k) {
     const Reals3 impulse_k = impulse * gradient[k];
-    for (std::size_t l = 0; l < count; ++l)
-      if (has_directions[l]) nodes.give(pieces[l].node[k], {impulse_k.x[l], impulse_k.y[l], impulse_k.z[l]});
+    for (std::size_t l = 0; l < count; ++l) nodes.give(pieces[l].node[k], {impulse_k.x[l], impulse_k.y[l], impulse_k.z[l]});
   }
   for (std::size_t l = 0; l < count; ++l) given[l] += impulse[l];
   const Reals size = impulse < 0 ? -impulse : impulse;
