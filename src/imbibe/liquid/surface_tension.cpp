@@ -63,20 +63,28 @@ float wetness_of(const Stage& t, std::size_t i, const WallSample& wall) {
 // 1 in the first layer of particles on a wall, 0 from the second on.
 float first_layer(float distance, float spacing) { return std::clamp(2 - distance / (0.8f * spacing), 0.0f, 1.0f); }
 
+// How far the surface with this (not normalised) inward normal runs along a wall: 0 from 45 degrees on, 1 below 26.
+float lies_along(const Vec3f& normal, float length, const Vec3f& wall) {
+  return length > 0 ? ramp(-dot(normal, wall) / length, 0.7f, 0.9f) : 0;
+}
+
 // Colour gradient with wetted walls, filling, set S and the particle's class.
 void mark_surface(const Stage& t, std::size_t i, ParticleClass& kind) {
   LiquidFields& f = t.f;
   Vec3f n = xyz(f.colour_gradient[i]);
   float dry = 1, nearest = 1e6f;
+  Vec3f nearest_wall{};
   for (const WallSample& wall : f.boundary.samples(i)) {
     const float beta = wetness_of(t, i, wall);
     n += wall.gradient * beta;
     dry *= 1 - beta * wall.lambda;
-    nearest = std::min(nearest, wall.distance / f.spacing);
+    if (wall.distance < nearest * f.spacing) nearest = wall.distance / f.spacing, nearest_wall = wall.normal;
   }
   const float length = norm(n), gradient_h = length * f.neighbours.kernel.support;
   const float filling = f.colour[i] + (1 - dry);
-  const float layer = first_layer(nearest, 1);
+  // At a line the first layer sees the kink of surface and wall, not the surface. Where the surface runs along the wall both
+  // have one normal: a film of one layer and the thin rim of a flat drop have their curvature as any surface.
+  const float layer = first_layer(nearest, 1) * (1 - lies_along(n, length, nearest_wall));
   kind = particle_class(gradient_h, filling, nearest);
   const float reliability = ramp(gradient_h, 0.2f, 0.4f) * ramp(-filling, -0.95f, -0.89f) *
                             ramp(f.colour[i], 0.2f, 0.3f) * ramp(-layer, -0.6f, -0.4f);
@@ -167,6 +175,8 @@ struct LinePull {
   Vec3f force{};        // N on the particle, along the wall
   float length = 0;     // m, of the line that the particle stands for
   float drag = 0;       // 1/s
+  Vec3f inward{};                   // unit, along the wall
+  float hold_in = 0, hold_out = 0;  // N, most that hysteresis holds against motion inward and outward
   float activity = 0;   // 0..1
 };
 
@@ -208,6 +218,11 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall) {
   pull.length = 4 * strength * tau * f.volume * activity;
   pull.force = inward * (-t.gamma * pull.length *
                          unbalanced_cosine(cosine, wall.cos_contact_angle, wall.cos_receding_angle));
+  pull.inward = inward;
+  // A line that moves inward feels the receding angle, one that moves outward the advancing one (contact_angle.h).
+  const float within = std::clamp(cosine, wall.cos_contact_angle, wall.cos_receding_angle);
+  pull.hold_in = t.gamma * pull.length * (wall.cos_receding_angle - within);
+  pull.hold_out = t.gamma * pull.length * (within - wall.cos_contact_angle);
   pull.drag = activity * static_cast<float>(t.params.contact.line_friction) * std::sqrt(t.gamma * f.spacing / f.rest_density) *
               strength / std::max(wall.distance, 0.3f * f.spacing);
   return pull;
@@ -235,11 +250,14 @@ void force_on(const Stage& t, std::size_t i, Real dt, Vec3* impulse) {
     if (pull.activity == 0) continue;
     line += pull.force;
     if (pull.length > t.s.line_length[i]) t.s.line_length[i] = pull.length, t.s.line_wall[i] = wall.wall;
-    // Friction of the line, implicit so that it can only slow.
+    // Friction of the line and what hysteresis holds, implicit so that they can only slow.
     Float4& u = f.velocity[i];
     const Vec3f v = xyz(u), slip = v - f.boundary.wall_velocity(i, wall), tangential = slip - wall.normal * dot(slip, wall.normal);
     const float change = static_cast<float>(dt) * pull.drag;
-    const Vec3f lost = tangential * (change / (1 + change));
+    Vec3f lost = tangential * (change / (1 + change));
+    const float slides = dot(tangential - lost, pull.inward);
+    const float held = static_cast<float>(dt) / f.particle_mass * (slides > 0 ? pull.hold_in : pull.hold_out);
+    lost += pull.inward * std::clamp(slides, -held, held);
     u = {v.x - lost.x, v.y - lost.y, v.z - lost.z, 0};
     const Vec3 given(lost * f.particle_mass - pull.force * static_cast<float>(dt));
     impulse[wall.wall] += given;

@@ -13,9 +13,11 @@
 // d: centres of the outermost particles stand half a spacing under the liquid's surface. Their surface is parallel to it,
 // hence kappa; and on the shell outside them p_s pushes along the surface, hence the second term (work done on an
 // incompressible flow is then right to first order in d: Rayleigh's period +8 % without it, +1 % with it, at R = 8 dx).
-// kappa is measured only on the set S: |n|H > 0.3, C > 0.25, C + beta lambda < 0.92, at least 1.2 dx from walls, S evenly
-// around (all as gradual weights); it acts on all particles with |n| > 0 and at the contact line (extended by a kernel
-// mean): else 17 % of the tension is lost.
+// kappa is measured only on the set S: |n|H > 0.3, C > 0.25, C + beta lambda < 0.92, at least 1.2 dx from walls unless the
+// surface runs along the wall (within 26 to 45 degrees), S evenly around (all as gradual weights); it acts on all particles
+// with |n| > 0 and at the contact line (extended by a kernel mean): else 17 % of the tension is lost. Films of one layer and
+// thin rims thus have the curvature that keeps them whole; without it a drop of 45 degrees that started at 15 left 17 % of
+// itself behind.
 // Sources: Brackbill, Kothe & Zemach, J. Comput. Phys. 100 (1992) 335; Morris, Int. J. Numer. Meth. Fluids 33 (2000) 333.
 // Momentum: the forces on a drop that touches nothing are made to sum to zero (a gather form does not conserve it by
 // itself); the sum on a drop with a contact line is the wall's pull on the line, and the wall gets the reaction.
