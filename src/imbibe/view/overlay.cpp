@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "imbibe/view/colour_bar.h"
 #include "imbibe/view/text.h"
@@ -35,8 +36,9 @@ void draw_scale_bar(Image& image, const Frame& frame, const Camera& camera, Real
                          {{b.x + off, a.y, low}, {b.x + off, b.y, low}},
                          {{b.x, b.y + off, low}, {a.x, b.y + off, low}},
                          {{a.x - off, b.y, low}, {a.x - off, a.y, low}}};
-  // The lowest edge in the picture; of two, the one that lies flatter.
+  // The lowest edge in the picture; of two, the one that lies flatter. Not one of an upright cloth's thickness.
   const auto score = [&](const Edge& e) {
+    if (norm(e.to - e.from) < 0.2 * std::max(size.x, size.y)) return -std::numeric_limits<Real>::infinity();
     const ImagePoint p = project(camera, e.from), q = project(camera, e.to);
     return std::max(p.y, q.y) + 0.5 * (p.y + q.y) + 0.3 * std::abs(p.x - q.x);
   };
