@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "imbibe/sim/measures.h"
 #include "imbibe/verify/families.h"
@@ -89,6 +90,8 @@ CaseResult stain(CaseRunner& runner) {
   r.checks.push_back(near("area of the stain", 1e6 * area, 1e6 * supplied / (capacity * mean), "mm2", 0.05, "project's goal: V/(yarn water per area x mean saturation)"));
   r.checks.push_back(at_most("share of the water that is left in pores", pores / (pores + yarn), 0.05, "1", "yarns drain them: 2 % were seen before with cotton"));
   r.checks.push_back(at_most("water that is still free", 1e9 * mass_balance(u.last).free / m.liquid.density, 0.05, "uL", "taken up"));
+  r.notes.push_back("What stays in the pores is in balance with the yarns: corner menisci of the share (P_e/P)^2, all of the pore at its entry suction P_e. "
+                    "The corners of a square tube hold 6 % of it there, (4 - pi)/(2 + sqrt(pi))^2 by Mayer, Stowe and Princen, so cloth should keep less than computed.");
   runner.picture(r, u.last, runner.scene("drop_on_cloth"), "The stain at the end");
   r.parameters = {{"drop", "10 uL of water on cotton shirting"}, {"wet", "above 0.5 % saturation"}, {"mean saturation", fmt::format("{:.3f}", mean)}};
   return r;
@@ -122,24 +125,52 @@ CaseResult impact(CaseRunner& runner) {
   return r;
 }
 
+// How much of the drop test's 50 uL stands on cloth of one fibre, over time.
+struct Standing {
+  std::vector<Real> time, share;  // s, of the drop
+  // The first output with less than `level` on the face; none if there is none.
+  Real falls_below(Real level) const {
+    const auto at = std::find_if(share.begin(), share.end(), [&](Real s) { return s < level; });
+    return at == share.end() ? std::numeric_limits<Real>::quiet_NaN() : time[static_cast<std::size_t>(at - share.begin())];
+  }
+};
+Standing drop_on(CaseRunner& runner, const std::string& fibre, Real seconds, const std::vector<std::string>& cloth = {}) {
+  Standing s;
+  std::vector<std::string> overrides{"textiles[0].warp.fibre=" + fibre, "textiles[0].weft.fibre=" + fibre, set("duration", seconds, "s")};
+  overrides.insert(overrides.end(), cloth.begin(), cloth.end());
+  if (runner.quick()) overrides.push_back("liquid.particle_mass=0.048 mg");
+  runner.run("drop_time", overrides, [&](const World& now, const StepReport&) {
+    const MassBalance b = mass_balance(now);
+    s.time.push_back(now.time), s.share.push_back(b.free / b.supplied);
+  });
+  return s;
+}
+
 CaseResult drop_times(CaseRunner& runner) {
   CaseResult r;
-  const Real across = runner.form(5.0, 8.0);
-  const auto of = [&](const std::string& fibre, Real seconds) {
-    return drop(runner, {"textiles[0].warp.fibre=" + fibre, "textiles[0].weft.fibre=" + fibre, "textiles[0].warp.density=24 /cm", "textiles[0].weft.density=24 /cm", particle_mass(across), set("duration", seconds, "s"),
-                         "output.every=0.1 s"});
-  };
-  const Uptake cotton = of("cotton", runner.form(4.0, 10.0)), polyester = of("polyester", runner.form(4.0, 30.0));
-  r.checks.push_back(at_most("scoured cotton: time to nine tenths", cotton.nine_tenths, 10, "s", "class of the drop test (AATCC 79): absorbent"));
-  r.checks.push_back(at_least("polyester over scoured cotton: time to nine tenths", polyester.nine_tenths / cotton.nine_tenths, 4, "1",
-                              "classes of 1 to 5 s and 20 to 60 s (50 uL)"));
-  for (const char* fibre : {"cotton_raw", "polypropylene"}) {
-    const Uptake u = of(fibre, runner.form(1.0, 5.0));
-    r.checks.push_back(at_most(fmt::format("{}: taken up", fibre), u.end, 0.01 * drop_volume * 1e9, "uL", "angles above 90 degrees: the drop stays (never, in practice)"));
+  const Standing cotton = drop_on(runner, "cotton", runner.form(7.0, 12.0)), polyester = drop_on(runner, "polyester", runner.form(7.0, 40.0));
+  const Real nine_tenths = cotton.falls_below(0.1);
+  r.checks.push_back(at_most("scoured cotton: nine tenths are taken up after", nine_tenths, 10, "s", "absorbent cloth takes the drop in 1 to 10 s"));
+  Real left = 1;
+  for (std::size_t i = 0; i < polyester.time.size() && polyester.time[i] <= nine_tenths; ++i) left = polyester.share[i];
+  r.checks.push_back(at_least("polyester: share that still stands then", left, 0.2, "1", "another class than cotton"));
+  if (!runner.quick()) {
+    // A thousandth of the drop, some particles, is no film that an eye or a reflection would show.
+    const Real cotton_gone = cotton.falls_below(1e-3), polyester_gone = polyester.falls_below(1e-3);
+    r.checks.push_back(at_least("scoured cotton: gone from the face after", cotton_gone, 1, "s", "class of 1 to 10 s"));
+    r.checks.push_back(at_most("scoured cotton: gone from the face after", cotton_gone, 10, "s", "class of 1 to 10 s"));
+    r.checks.push_back(at_least("polyester: gone from the face after", polyester_gone, 20, "s", "class of 20 to 90 s"));
+    r.checks.push_back(at_most("polyester: gone from the face after", polyester_gone, 90, "s", "class of 20 to 90 s"));
   }
-  r.notes.push_back(fmt::format("Nine tenths of 10 uL are gone after {:.2f} s on scoured cotton. Classes, not numbers: documented times spread by a factor of 5 (m).", cotton.nine_tenths));
-  r.charts.push_back(chart_of("A drop on scoured cotton", "time", "s", "volume taken up", "uL", cotton.time, {{"cotton", cotton.taken, ""}}));
-  r.parameters = {{"drop", "10 uL of water"}, {"cloth", "20 tex, 24 x 24 /cm"}};
+  const std::vector<std::string> open_cloth{"textiles[0].warp.density=24 /cm", "textiles[0].weft.density=24 /cm"};  // as their round yarns allow
+  for (const char* fibre : {"cotton_raw", "polypropylene"}) {
+    const Standing s = drop_on(runner, fibre, runner.form(1.0, 5.0), open_cloth);
+    r.checks.push_back(at_most(fmt::format("{}: share taken up", fibre), 1 - s.share.back(), 0.01, "1", "angles above 90 degrees: the drop stays (never, in practice)"));
+  }
+  r.notes.push_back("Classes, not numbers: documented times spread by a factor of 5 (m).");
+  r.charts.push_back(chart_of("A drop on cloth", "time", "s", "share on the face", "", polyester.time, {{"polyester", polyester.share, ""}}));
+  r.charts.push_back(chart_of("A drop on scoured cotton", "time", "s", "share on the face", "", cotton.time, {{"cotton", cotton.share, ""}}));
+  r.parameters = {{"drop", "50 uL of water at 0.3 m/s"}, {"cloth", "20 tex, 30 x 28 /cm; raw cotton and polypropylene 24 x 24 /cm"}};
   return r;
 }
 
@@ -154,8 +185,8 @@ void add_coupled(std::vector<Case>& cases) {
                    "yarns drain the pores: 16 kPa against 1.2 kPa of suction", "no sorption, no drying", models, stain});
   cases.push_back({"impact", family, "An impact gives the cloth what the drop loses", "momentum of liquid and cloth through impact, bounce and absorption", "p(liquid) + impulse on the cloth = constant",
                    "Newton; a bounce v' = v - (1 + e)(v.n) n has the opposite impulse, an absorbed particle gives all of its momentum", "held cloth, no gravity", "coupling/contact.h coupling/absorption.h coupling/bounce.h", impact});
-  cases.push_back({"drop-times", family, "Drop times of four fibres", "how long a drop stands on cloth", "classes: cotton seconds, polyester tens of seconds, raw cotton and polypropylene never",
-                   "AATCC TM79 classes; textile literature, no single source found", "plain cloth of 20 tex yarns", models + " wetting/entry.h", drop_times});
+  cases.push_back({"drop-times", family, "Drop times of four fibres", "how long a drop stands on cloth", "classes: cotton 1 to 10 s, polyester 20 to 90 s, raw cotton and polypropylene never",
+                   "AATCC TM79 classes; textile literature, no single source found", "plain cloth of 20 tex yarns, as woven", models + " wetting/entry.h", drop_times});
 }
 
 }  // namespace imbibe::verify
