@@ -41,6 +41,7 @@ struct Stage {
   const SurfaceParams& params;
   SurfaceScratch& s;
   float gamma;
+  std::span<const Wall> walls;
   float weight(float distance) const { return f.volume * f.neighbours.kernel.value(distance); }
   float depth() const { return static_cast<float>(params.offset) * f.spacing; }  // of surface particles
   float least_spread() const { return 1e-3f * f.spacing * f.spacing; }           // of a surface to be fitted, m2
@@ -74,17 +75,21 @@ void mark_surface(const Stage& t, std::size_t i, ParticleClass& kind) {
   Vec3f n = xyz(f.colour_gradient[i]);
   float dry = 1, nearest = 1e6f;
   Vec3f nearest_wall{};
+  bool woven = false;
   for (const WallSample& wall : f.boundary.samples(i)) {
     const float beta = wetness_of(t, i, wall);
     n += wall.gradient * beta;
     dry *= 1 - beta * wall.lambda;
-    if (wall.distance < nearest * f.spacing) nearest = wall.distance / f.spacing, nearest_wall = wall.normal;
+    if (wall.distance >= nearest * f.spacing) continue;
+    nearest = wall.distance / f.spacing, nearest_wall = wall.normal, woven = t.walls[wall.wall].two_sided;
   }
   const float length = norm(n), gradient_h = length * f.neighbours.kernel.support;
   const float filling = f.colour[i] + (1 - dry);
   // At a line the first layer sees the kink of surface and wall, not the surface. Where the surface runs along the wall both
-  // have one normal: a film of one layer and the thin rim of a flat drop have their curvature as any surface.
-  const float layer = first_layer(nearest, 1) * (1 - lies_along(n, length, nearest_wall));
+  // have one normal: a film of one layer and the thin rim of a flat drop have their curvature as any surface. A woven face is
+  // as rough as a layer is thick: on wet cloth a puddle of two layers would pull holes into itself and never come to rest.
+  const float along = woven ? 0 : lies_along(n, length, nearest_wall);
+  const float layer = first_layer(nearest, 1) * (1 - along);
   kind = particle_class(gradient_h, filling, nearest);
   const float reliability = ramp(gradient_h, 0.2f, 0.4f) * ramp(-filling, -0.95f, -0.89f) *
                             ramp(f.colour[i], 0.2f, 0.3f) * ramp(-layer, -0.6f, -0.4f);
@@ -353,7 +358,7 @@ SurfaceReport compute_surface(LiquidFields& f, const SurfaceParams& params, Real
     return report;
   }
   begin_scratch(scratch, f.count);
-  const Stage t{f, params, scratch, static_cast<float>(surface_tension)};
+  const Stage t{f, params, scratch, static_cast<float>(surface_tension), walls};
   parallel_for(f.count, [&](std::size_t i) { mark_surface(t, i, kinds[i]); });
   parallel_for(f.count, [&](std::size_t i) {
     scratch.trust[i] = 0;
