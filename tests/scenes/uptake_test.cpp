@@ -17,10 +17,12 @@ Real taken_up(const std::vector<std::string>& overrides, Real time) {
 }
 
 TEST(Uptake, FallsStrictlyWithTheContactAngle) {
-  Real last = 1;  // some 500 particles: how far 190 of them spread on impact is a matter of chance to 5 %
+  // Some 500 particles: how they spread on impact is a matter of chance, which hides 20 against 45 degrees (1 % in 1 s of the large
+  // drop, scenes/seed_a/contact_angle_*) for the first 40 ms.
+  Real last = 1;
   for (const char* angle : {"20 deg", "45 deg", "70 deg", "89 deg"}) {
     const Real taken = taken_up({std::string("textiles[0].contact_angle=") + angle,
-                                 "textiles[0].receding_angle=10 deg", "liquid.particle_mass=0.006 mg"}, 0.03);
+                                 "textiles[0].receding_angle=10 deg", "liquid.particle_mass=0.006 mg"}, 0.05);
     EXPECT_LT(taken, last) << angle;
     last = taken;
   }

@@ -13,9 +13,6 @@ namespace imbibe {
 namespace {
 
 Vec3 xyz(const Float4& f) { return {f.x, f.y, f.z}; }
-void set(Float4& f, const Vec3& v) {
-  f.x = static_cast<float>(v.x), f.y = static_cast<float>(v.y), f.z = static_cast<float>(v.z);
-}
 
 // Material coordinates of a point of the sheet.
 Vec3 material(const Sheet& sheet, const SurfacePoint& at) {
@@ -347,9 +344,9 @@ void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid,
     const Vec3 after = velocity_after_impact(v, surface_v, hit.crossing.normal, mass,
                                              inverse_mass_at(sheet, scratch.held, hit.crossing.at), impact,
                                              {seed, p.id[i], step});
-    set(p.velocity[i], after);
+    store(p.velocity[i], after);
     give_impulse(cloth.soft, scratch.held, hit.crossing.at, mass * (v - xyz(p.velocity[i])));
-    set(p.position[i], place_over(scratch.surface, hit.crossing, gap));
+    store(p.position[i], place_over(scratch.surface, hit.crossing, gap));
     ++cloth.bounces, ++report.bounced;
   }
 }

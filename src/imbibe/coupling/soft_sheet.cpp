@@ -186,9 +186,6 @@ std::size_t throw_back(SoftSheet& soft, SoftSheetScratch& scratch, Liquid& liqui
                        Real gap, const ImpactParams& impact, std::uint64_t seed, std::uint64_t step) {
   Particles& p = liquid.particles;
   find_sheet_hits(scratch.surface, before.first(p.size()), p.position, scratch.hits, scratch.hit_tiles);
-  const auto store = [](Float4& f, const Vec3& v) {
-    f.x = static_cast<float>(v.x), f.y = static_cast<float>(v.y), f.z = static_cast<float>(v.z);
-  };
   for (const SheetHit& hit : scratch.hits) {
     const Index i = hit.particle;
     const SurfacePoint& at = hit.crossing.at;

@@ -421,10 +421,6 @@ SurfaceSample place_after(const Wall& wall, const Vec3& before, const Vec3& now)
   return {-is.distance - 2 * sheet.half[sheet.axis], sheet.normal(was.side)};  // through the sheet
 }
 
-Float4 record(const Vec3& v, float w) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), w};
-}
-
 }  // namespace
 
 std::size_t keep_outside(const Boundary& boundary, std::span<const Float4> before, std::span<Float4> position,
@@ -448,11 +444,11 @@ std::size_t keep_outside(const Boundary& boundary, std::span<const Float4> befor
         const SurfaceSample now = place_after(walls[sample.wall], was, p);
         if (now.distance >= 0) continue;
         moved = true;
-        position[i] = record(p + now.normal * (gap - now.distance), position[i].w);
+        store(position[i], p + now.normal * (gap - now.distance));
         const Vec3 v = place(velocity[i]);
         const Real into = dot(v, now.normal);
         if (into >= 0) continue;
-        velocity[i] = record(v - now.normal * into, velocity[i].w);
+        store(velocity[i], v - now.normal * into);
         if (part.impulse.empty()) part.impulse.resize(impulse.size());
         part.impulse[sample.wall] += now.normal * (into * particle_mass);
       }

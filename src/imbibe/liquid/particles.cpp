@@ -4,6 +4,10 @@
 
 namespace imbibe {
 
+void store(Float4& f, const Vec3& v) {
+  f.x = static_cast<float>(v.x), f.y = static_cast<float>(v.y), f.z = static_cast<float>(v.z);
+}
+
 Index add_particle(Liquid& liquid, const Vec3& position, const Vec3& velocity) {
   Particles& p = liquid.particles;
   const std::size_t size = p.size() + 1;

@@ -58,6 +58,10 @@ struct Liquid {
   Real mass() const { return particle_mass * static_cast<Real>(particles.size()); }
 };
 
+// Rounds v into f; w stays. Not inline on purpose: g++ 12 reads back what it has just rounded WITHOUT the rounding where its
+// vectoriser sees both, so that the impulse booked for a bounce was not that of the velocity kept, and clang had other bits.
+void store(Float4& f, const Vec3& v);
+
 // Appends a particle with a new id, at rest density and without warm start. Returns the id.
 Index add_particle(Liquid& liquid, const Vec3& position, const Vec3& velocity);
 

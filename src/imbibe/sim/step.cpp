@@ -164,7 +164,7 @@ void bounce_off_moving_yarn(Textile& textile, const ClothPlace& place, const Par
                                                textile.contact.friction);
   const Real inverse = inverse_mass_at(soft.sheet, own.held, at);
   const Vec3 after = before - held.impulse_on_textile / (mass * (1 + mass * inverse));
-  velocity.x = static_cast<float>(after.x), velocity.y = static_cast<float>(after.y), velocity.z = static_cast<float>(after.z);
+  store(velocity, after);
   give_impulse(soft, own.held, at, mass * (before - Vec3(velocity.x, velocity.y, velocity.z)));
   ++textile.exchange.bounces;
 }
@@ -189,9 +189,7 @@ void bounce_off_yarns(World& world, StepScratch& scratch, StepReport& report) {
           hit.hit.resting ? rest(before, world.liquid.particle_mass)
                           : bounce(before, hit.hit.normal, world.liquid.particle_mass, textile.contact.restitution,
                                    textile.contact.friction);
-      v.x = static_cast<float>(after.velocity.x);
-      v.y = static_cast<float>(after.velocity.y);
-      v.z = static_cast<float>(after.velocity.z);
+      store(v, after.velocity);
       textile.exchange.impulse += world.liquid.particle_mass * (before - Vec3(v.x, v.y, v.z));  // as stored
       ++textile.exchange.bounces;
     }
