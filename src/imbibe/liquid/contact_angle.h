@@ -13,7 +13,7 @@
 // Hysteresis: no line force while the actual angle is between receding and advancing, where the wall holds just what pulls;
 // but a line that moves feels the angle of its motion, receding or advancing. Against motion inward the wall holds up to
 // gamma (cos theta_r - cos th_a) per length more, outward up to gamma (cos th_a - cos theta): dry friction, which can only
-// stop (th_a counts as within the range). Without it a line ran on into the range.
+// stop (th_a counts as within the range). Without it a line ran on into the range. On solids only (surface_tension.cpp).
 // Friction of the line: particles at the line feel drag line_friction sqrt(gamma dx/rho) |G|/d [1/s].
 // Source: idea of the line force, Huber et al., J. Comput. Phys. 310 (2016) 459; Young 1805.
 // Validity: plane or solid of radius >= 3 H; 30 to 120 deg. Tested in tests/liquid/drop_test.cpp.
