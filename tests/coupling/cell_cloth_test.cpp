@@ -255,20 +255,31 @@ TEST(CellCloth, ADropThatHangsIsDrawnBackIntoCellsThatHaveRoom) {
   EXPECT_NEAR(cell_kg(cloth), 3e-5, 1e-18);
 }
 
+// A square cloth of 0.2 kg/m2 that holds three times its mass and does not move, by as many nodes a side.
+CellCloth fixed_square(Real side, Index nodes, SoftSheetScratch& scratch) {
+  CellCloth cloth;
+  cloth.soft.sheet = make_sheet(GridSheet{.width = side, .height = side, .columns = nodes, .rows = nodes, .areal_mass = 0.2});
+  cloth.soft.sheet.fixed = true;
+  cloth.params.capacity_ratio = 3;
+  fit_cells(cloth);
+  find_held(cloth.soft, scratch.held);
+  set_step(scratch.surface, cloth.soft.sheet.position, cloth.soft.sheet.position, cloth.soft.sheet.triangles);
+  return cloth;
+}
+
+Liquid coarse_liquid() {
+  Liquid water = liquid();
+  water.particle_mass = 2e-5;
+  return water;
+}
+
 TEST(CellCloth, WhatACoarseParticleGivesDoesNotDependOnTheSizeOfTheCells) {
   // A particle of 20 mg on cells that hold 260 mg, 16 mg and 4 mg, 4.5 mg on its own cross-section: it is taken, and fills
   // those under it alike.
   for (const Index nodes : {23u, 92u, 185u}) {
-    CellCloth cloth;
-    cloth.soft.sheet = make_sheet(GridSheet{.width = 0.46, .height = 0.46, .columns = nodes, .rows = nodes, .areal_mass = 0.2});
-    cloth.soft.sheet.fixed = true;
-    cloth.params.capacity_ratio = 3;
-    fit_cells(cloth);
     SoftSheetScratch scratch;
-    find_held(cloth.soft, scratch.held);
-    set_step(scratch.surface, cloth.soft.sheet.position, cloth.soft.sheet.position, cloth.soft.sheet.triangles);
-    Liquid water = liquid();
-    water.particle_mass = 2e-5;
+    CellCloth cloth = fixed_square(0.46, nodes, scratch);
+    Liquid water = coarse_liquid();
     add_particle(water, {0.2312, 0.2291, 0.3 * water.spacing()}, {});
     std::vector<std::uint8_t> dead(1, 0);
     CellExchangeReport report;
@@ -285,16 +296,9 @@ TEST(CellCloth, WhatRainFillsOfAClothDoesNotDependOnTheSizeOfItsCells) {
   // particle adds where it is taken is about a quarter: cells end full in the mean, within a part of that.
   Real coarse = 0;
   for (const Index nodes : {7u, 25u, 49u}) {
-    CellCloth cloth;
-    cloth.soft.sheet = make_sheet(GridSheet{.width = 0.12, .height = 0.12, .columns = nodes, .rows = nodes, .areal_mass = 0.2});
-    cloth.soft.sheet.fixed = true;
-    cloth.params.capacity_ratio = 3;
-    fit_cells(cloth);
     SoftSheetScratch scratch;
-    find_held(cloth.soft, scratch.held);
-    set_step(scratch.surface, cloth.soft.sheet.position, cloth.soft.sheet.position, cloth.soft.sheet.triangles);
-    Liquid water = liquid();
-    water.particle_mass = 2e-5;
+    CellCloth cloth = fixed_square(0.12, nodes, scratch);
+    Liquid water = coarse_liquid();
     for (std::uint64_t k = 0; k < 1296; ++k)
       add_particle(water, {0.12 * uniform({5, k, 0}, 0), 0.12 * uniform({5, k, 0}, 1), 0.3 * water.spacing()}, {});
     std::vector<std::uint8_t> dead(water.particles.size(), 0);

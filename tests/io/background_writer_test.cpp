@@ -36,28 +36,12 @@ TEST(BackgroundWriter, the_run_goes_on_while_a_job_is_done) {
   writer.finish();
 }
 
-TEST(BackgroundWriter, no_more_jobs_wait_than_allowed) {
+// Six jobs that cannot end are posted to a writer: one is being done and two wait, until they are let go.
+void expect_two_waiting(BackgroundWriter& writer, bool large) {
   Gate gate;
   std::atomic<int> posted = 0;
-  BackgroundWriter writer(2);
   std::thread run([&] {
-    for (int i = 0; i < 6; ++i) writer.post([&] { gate.wait(); }), ++posted;
-  });
-  while (posted < 3) std::this_thread::yield();  // one being done and two waiting
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_LE(posted, 3);
-  gate.open = true;
-  run.join();
-  writer.finish();
-  EXPECT_EQ(posted, 6);
-}
-
-TEST(BackgroundWriter, of_a_large_run_fewer_jobs_wait) {
-  Gate gate;
-  std::atomic<int> posted = 0;
-  BackgroundWriter writer(20, 2);
-  std::thread run([&] {
-    for (int i = 0; i < 6; ++i) writer.post([&] { gate.wait(); }, true), ++posted;
+    for (int i = 0; i < 6; ++i) writer.post([&] { gate.wait(); }, large), ++posted;
   });
   while (posted < 3) std::this_thread::yield();
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -66,6 +50,16 @@ TEST(BackgroundWriter, of_a_large_run_fewer_jobs_wait) {
   run.join();
   writer.finish();
   EXPECT_EQ(posted, 6);
+}
+
+TEST(BackgroundWriter, no_more_jobs_wait_than_allowed) {
+  BackgroundWriter writer(2);
+  expect_two_waiting(writer, false);
+}
+
+TEST(BackgroundWriter, of_a_large_run_fewer_jobs_wait) {
+  BackgroundWriter writer(20, 2);
+  expect_two_waiting(writer, true);
 }
 
 TEST(BackgroundWriter, what_a_job_throws_reaches_the_run_and_nothing_is_written_after_it) {
