@@ -12,8 +12,8 @@ Index add_particle(Liquid& liquid, const Vec3& position, const Vec3& velocity) {
   Particles& p = liquid.particles;
   const std::size_t size = p.size() + 1;
   visit_arrays(p, [size](auto& array) { array.resize(size); });
-  p.position.back() = {static_cast<float>(position.x), static_cast<float>(position.y), static_cast<float>(position.z), 0};
-  p.velocity.back() = {static_cast<float>(velocity.x), static_cast<float>(velocity.y), static_cast<float>(velocity.z), 0};
+  store(p.position.back(), position);
+  store(p.velocity.back(), velocity);
   p.id.back() = liquid.next_id;
   p.kind.back() = ParticleClass::inside;
   p.density.back() = static_cast<float>(liquid.kind.density);
