@@ -14,7 +14,7 @@
 // hence kappa; and on the shell outside them p_s pushes along the surface, hence the second term (work done on an
 // incompressible flow is then right to first order in d: Rayleigh's period +8 % without it, +1 % with it, at R = 8 dx).
 // kappa is measured only on the set S: |n|H > 0.3, C > 0.25, C + beta lambda < 0.92, at least 1.2 dx from walls unless the
-// surface runs along the wall (within 26 to 45 degrees), S evenly around (all as gradual weights); it acts on all particles
+// surface runs along a solid (within 26 to 45 degrees), S evenly around (all as gradual weights); it acts on all particles
 // with |n| > 0 and at the contact line (extended by a kernel mean): else 17 % of the tension is lost. Films of one layer and
 // thin rims thus have the curvature that keeps them whole; without it a drop of 45 degrees that started at 15 left 17 % of
 // itself behind.
