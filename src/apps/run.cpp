@@ -256,7 +256,10 @@ class RunSession {
   }
 
   // Copies that wait for their pictures may make a run a few times as large: not one that fills a laptop by itself.
-  static bool is_large() { return memory_in_use() > 1e9; }
+  static bool is_large() {
+    constexpr double a_gigabyte = 1e9;
+    return memory_in_use() > a_gigabyte;
+  }
 
   bool is_output_time(const World& world) const {
     const Real intervals = world.time / output_interval(scene_);
