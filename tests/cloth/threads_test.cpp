@@ -98,6 +98,51 @@ TEST(Threads, both_keep_momentum_with_what_the_pinned_node_was_given) {
   EXPECT_GT(norm(t.held[3]), 0);
 }
 
+// Threads of lengths that differ, one after the other in one list; each has a pinned node.
+OneThread crooked_threads(const std::vector<Index>& counts) {
+  OneThread all;
+  for (const Index count : counts) {
+    const OneThread t = crooked_thread(count);
+    const auto offset = static_cast<Index>(all.position.size());
+    all.position.insert(all.position.end(), t.position.begin(), t.position.end());
+    all.velocity.insert(all.velocity.end(), t.velocity.begin(), t.velocity.end());
+    all.inverse_mass.insert(all.inverse_mass.end(), t.inverse_mass.begin(), t.inverse_mass.end());
+    all.held.resize(all.position.size());
+    for (auto piece : t.stretch.pieces) {
+      for (Index& node : piece.node) node += offset;
+      all.stretch.pieces.push_back(piece);
+    }
+    all.stretch_material.insert(all.stretch_material.end(), t.stretch_material.begin(), t.stretch_material.end());
+    all.stretch.first.push_back(all.stretch.pieces.size());
+  }
+  all.stretch.families = {0, counts.size()};
+  return all;
+}
+
+TEST(Threads, solved_side_by_side_have_the_bits_of_threads_solved_alone) {
+  const std::vector<Index> counts{12, 5, 30, 8, 6, 17, 9};
+  const Real dt = 3e-4;
+  OneThread all = crooked_threads(counts);
+  ThreadSolve work;
+  begin_thread_stretch(all.stretch, work);
+  for (int pass = 0; pass < 3; ++pass) solve_thread_stretch(all.stretch, all.stretch_material, all.nodes(), dt, work);
+  std::size_t node = 0;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    OneThread one = crooked_thread(counts[k]);
+    ThreadSolve alone;
+    begin_thread_stretch(one.stretch, alone);
+    for (int pass = 0; pass < 3; ++pass) solve_thread_stretch(one.stretch, one.stretch_material, one.nodes(), dt, alone);
+    for (std::size_t e = 0; e < alone.impulse.size(); ++e) EXPECT_EQ(work.impulse[all.stretch.first[k] + e], alone.impulse[e]) << k;
+    for (std::size_t i = 0; i < one.position.size(); ++i, ++node) {
+      EXPECT_EQ(all.velocity[node], one.velocity[i]) << "thread " << k << " node " << i;
+      EXPECT_EQ(all.held[node], one.held[i]) << "thread " << k << " node " << i;
+    }
+    EXPECT_EQ(work.outcome[k].greatest, alone.outcome[0].greatest);
+    EXPECT_EQ(work.outcome[k].squares, alone.outcome[0].squares);
+    EXPECT_EQ(work.outcome[k].solved, counts[k] - 1);
+  }
+}
+
 // Passes converge to the equation with the directions at the end of the substep.
 TEST(Threads, further_passes_satisfy_the_equation_with_the_new_directions) {
   const Real dt = 3e-4;

@@ -227,10 +227,11 @@ SubstepErrors solve_together(Step& s, Real h) {
       touch_solids(s, h, pull_part);
     }
     const bool converged = errors.strain < settled && !outcome.threads.tightened;
-    const bool last = outcome.part == 0 || effort >= (springs ? slow_passes : most_effort);
-    if (everywhere && pass >= least && (converged || last || closing)) break;
-    closing = !everywhere && (converged || last);
-    everywhere = springs || pass < least || closing;
+    const bool last = outcome.part == 0 || (springs ? pass >= slow_passes - 1 : effort >= most_effort);
+    const bool solved_all = everywhere || outcome.part == 1;
+    if (solved_all && pass >= least && (converged || last || closing)) break;
+    closing = !solved_all && (converged || last);
+    everywhere = pass < least || closing;
   }
   return errors;
 }

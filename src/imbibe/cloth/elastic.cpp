@@ -21,6 +21,7 @@ PassOutcome pass(const PieceList<Piece>& list, std::vector<PassOutcome>& tiles, 
     parallel_tiles(count, [&](std::size_t begin, std::size_t end) {
       PassOutcome outcome;
       for (std::size_t k = first + begin; k < first + end; ++k) solve(list.pieces[k], k, outcome);
+      outcome.solved = end - begin;
       tiles[begin / tile] = outcome;
     }, tile);
     for (const PassOutcome& outcome : tiles) all += outcome;
@@ -141,12 +142,14 @@ InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params,
   if (params.model == ClothModel::provot) {
     // Lines of springs cross each other far more closely than threads: their changes count as those of relaxation.
     all.relaxed = pass(t.springs, work.tiles, stretch(work.springs));
-    all.relaxed += solve_thread_stretch(t.spring_threads, work.spring_threads, nodes, dt, work.threads);
+    all.relaxed += solve_thread_stretch(t.spring_threads, work.spring_threads, nodes, dt, work.threads, scope);
     all.threads.turn = all.relaxed.turn;
     pass(t.springs, work.tiles, [&](const SpringPiece& piece, std::size_t, PassOutcome&) {
       if (piece.kind != SpringKind::flexion) correct_stretch(piece, nodes, params.provot.limit, dt);
     });
-    correct_threads(t.spring_threads, nodes, params.provot.limit, dt);
+    correct_threads(t.spring_threads, nodes, params.provot.limit, dt, work.threads);
+    const std::size_t springs = t.springs.pieces.size() + t.spring_threads.pieces.size();
+    all.part = static_cast<Real>(all.relaxed.solved) / static_cast<Real>(springs);
     return all;
   }
   const auto shear = [&](const std::vector<PieceMaterial>& materials, std::vector<Real>& given) {
@@ -160,8 +163,8 @@ InPlaneOutcome solve_in_plane(const SheetTopology& t, const ClothParams& params,
     stretch(work.triangle_stretch)(*piece, k, outcome);
   };
   // The stiffest last: what is solved last holds best.
-  all.relaxed += pass<shear_lanes>(t.cell_shear, scope, work.cell_shear_groups, shear(work.cell_shear, work.given_cell_shear));
-  all.relaxed += pass<shear_lanes>(t.triangle_shear, scope, work.triangle_shear_groups,
+  all.relaxed += pass<lanes>(t.cell_shear, scope, work.cell_shear_groups, shear(work.cell_shear, work.given_cell_shear));
+  all.relaxed += pass<lanes>(t.triangle_shear, scope, work.triangle_shear_groups,
                                    shear(work.triangle_shear, work.given_triangle_shear));
   all.relaxed += pass<1>(t.triangle_stretch, scope, work.triangle_stretch_groups, stretch_alone);
   all.threads = solve_thread_stretch(t.thread_stretch, work.thread_stretch, nodes, dt, work.threads, scope);

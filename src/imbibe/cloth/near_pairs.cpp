@@ -10,7 +10,7 @@ namespace imbibe {
 namespace {
 
 constexpr std::size_t triangle_tile = 1024, node_tile = 4096;
-constexpr Real slow_room = 0.2;  // of the shortest edge
+constexpr Real slow_room = 0.2, fast_room = 0.5;  // of the shortest edge
 
 bool shares_node(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
   for (const Index i : a) {
@@ -253,8 +253,11 @@ void reserve_near_pairs(const Sheet& sheet, const NodeMotion& nodes, Real thickn
     if (beyond <= 0) return;
   }
   c.room.resize(sheet.size());
+  // Room for eight substeps where that is little, else for two: more room means more pairs.
+  const Real edge = c.owners.shortest_edge;
   for (std::size_t i = 0; i < sheet.size(); ++i) {
-    c.room[i] = std::max(slow_room * c.owners.shortest_edge, 2 * motion(i));
+    const Real way = motion(i);
+    c.room[i] = std::max({slow_room * edge, 2 * way, std::min(8 * way, fast_room * edge)});
   }
   list_near_pairs(sheet, thickness, c);
 }

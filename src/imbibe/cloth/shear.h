@@ -10,12 +10,9 @@
 #include <array>
 
 #include "imbibe/cloth/impulse.h"
+#include "imbibe/cloth/lanes.h"
 
 namespace imbibe {
-
-inline constexpr std::size_t shear_lanes = 4;
-using Reals = double __attribute__((vector_size(8 * shear_lanes)));
-using Reals3 = Vector3<Reals>;
 
 // Of `count` pieces, 1 to 4: adds to `given` what they gave, and puts into `changed` by how much they changed their angles.
 template <std::size_t N, class Material>
@@ -29,10 +26,6 @@ inline void solve_shear(const ShearPiece<N>* pieces, std::size_t count, const No
     const Vec3 &v0 = v[pieces[0].node[k]], &v1 = v[pieces[lane(1)].node[k]], &v2 = v[pieces[lane(2)].node[k]],
                &v3 = v[pieces[lane(3)].node[k]];
     return Reals3{Reals{v0.x, v1.x, v2.x, v3.x}, Reals{v0.y, v1.y, v2.y, v3.y}, Reals{v0.z, v1.z, v2.z, v3.z}};
-  };
-  const auto root = [](Reals v) {
-    for (std::size_t l = 0; l < shear_lanes; ++l) v[l] = std::sqrt(v[l]);
-    return v;
   };
   std::array<Reals, N> weft, warp;
   for (std::size_t k = 0; k < N; ++k) {
@@ -73,8 +66,7 @@ inline void solve_shear(const ShearPiece<N>* pieces, std::size_t count, const No
     for (std::size_t l = 0; l < count; ++l) nodes.give(pieces[l].node[k], {impulse_k.x[l], impulse_k.y[l], impulse_k.z[l]});
   }
   for (std::size_t l = 0; l < count; ++l) given[l] += impulse[l];
-  const Reals size = impulse < 0 ? -impulse : impulse;
-  changed = size * mobility * step;
+  changed = size_of(impulse) * mobility * step;
 }
 
 }  // namespace imbibe

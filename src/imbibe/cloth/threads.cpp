@@ -33,58 +33,142 @@ EdgeAhead edge_ahead(const Piece& piece, const NodeMotion& nodes, Real dt) {
   return {b, nodes.inverse_mass[i], nodes.inverse_mass[j], rate, ahead, norm(ahead)};
 }
 
-// One pass over the edges [first, end) of one thread: the changes of their impulses.
+// Up to four threads of one family. Lanes without a thread, and those whose thread has ended, compute what nobody reads.
 template <class Piece>
-PassOutcome solve_stretch(const ThreadList<Piece>& threads, std::size_t first, std::size_t end,
-                          const std::vector<PieceMaterial>& materials, const NodeMotion& nodes, Real dt, ThreadSolve& work) {
-  // Down: directions, and elimination of the lower diagonal.
-  Real upper_before = 0, change_before = 0;  // of the edge before
-  Real b_before = 0;
-  Vec3 direction_before;
-  for (std::size_t e = first; e < end; ++e) {
-    const auto [b, wi, wj, rate, ahead, length] = edge_ahead(threads.pieces[e], nodes, dt);
-    const Vec3 direction = length > 0 ? ahead / length : direction_before;
-    const PieceMaterial& m = materials[e];
-    const Real reach = dt + m.damping;
-    const Real lower = -reach * b * b_before * wi * dot(direction, direction_before);
-    const Real diagonal = 1 / (dt * m.stiffness) + reach * b * b * (wi + wj) - lower * upper_before;
-    const Real strain = length - 1 + m.damping * dot(direction, rate) + work.impulse[e] / (dt * m.stiffness);
-    const Real side = -strain - lower * change_before;
-    work.strain[e] = strain;
-    const Real inverse = 1 / diagonal;
-    work.direction[e] = direction;
-    change_before = work.change[e] = side * inverse;
-    if (e + 1 < end) {
-      const Piece& next = threads.pieces[e + 1];
-      const Real b_next = next.weight[1];
-      const Vec3 next_ahead = b_next * (nodes.position[next.node[1]] - nodes.position[next.node[0]]) +
-                              (dt * b_next) * (nodes.velocity[next.node[1]] - nodes.velocity[next.node[0]]);
-      const Real next_length = norm(next_ahead);
-      const Real aligned = next_length > 0 ? dot(direction, next_ahead) / next_length : squared_norm(direction);
-      upper_before = work.upper[e] = -reach * b * b_next * wj * aligned * inverse;
+struct ThreadGroup {
+  std::array<std::size_t, lanes> thread{}, first{}, length{};
+  std::size_t count = 0, longest = 0;  // lane
+  void add(const ThreadList<Piece>& threads, std::size_t t) {
+    thread[count] = t, first[count] = threads.first[t], length[count] = threads.first[t + 1] - threads.first[t];
+    if (length[count] > length[longest]) longest = count;
+    ++count;
+  }
+  bool has(std::size_t l, std::size_t k) const { return k < length[l]; }
+  // The piece of lane l; the last one of a thread that has ended, the first lane's where there is none.
+  std::size_t edge(std::size_t l, std::size_t k) const {
+    return l < count ? first[l] + std::min(k, length[l] - 1) : first[0] + std::min(k, length[0] - 1);
+  }
+};
+
+Reals gather(auto&& value) { return Reals{value(0), value(1), value(2), value(3)}; }
+Reals3 gather3(auto&& value) {
+  const Vec3 a = value(0), b = value(1), c = value(2), d = value(3);
+  return {Reals{a.x, b.x, c.x, d.x}, Reals{a.y, b.y, c.y, d.y}, Reals{a.z, b.z, c.z, d.z}};
+}
+
+// The same, of four.
+Reals moved_strain(const EdgeLanes& edge, auto&& material, Real dt) {
+  const Reals damping = gather([&](std::size_t l) { return material(l).damping; });
+  const Reals soft = gather([&](std::size_t l) { return material(l).stiffness; }) * dt;
+  return dt / (dt + damping) * size_of(edge.strain + edge.change / soft);
+}
+
+// Down: directions, and elimination of the lower diagonal.
+template <class Piece>
+void eliminate(const ThreadList<Piece>& threads, const ThreadGroup<Piece>& group, const std::vector<PieceMaterial>& materials,
+               const NodeMotion& nodes, Real dt, const std::vector<Real>& impulse, EdgeLanes* edges) {
+  const auto pieces = [&](std::size_t k) {
+    return [&, k](std::size_t l) -> const Piece& { return threads.pieces[group.edge(l, k)]; };
+  };
+  const auto start = pieces(0);
+  Reals3 xi = gather3([&](std::size_t l) { return nodes.position[start(l).node[0]]; });
+  Reals3 vi = gather3([&](std::size_t l) { return nodes.velocity[start(l).node[0]]; });
+  Reals wi = gather([&](std::size_t l) { return nodes.inverse_mass[start(l).node[0]]; });
+  const Reals none{};
+  Reals b_before{}, change_before{}, reach_before{};  // of the edge before; reach_before over its diagonal
+  Reals3 direction_before{none, none, none};
+  for (std::size_t k = 0; k < group.length[group.longest]; ++k) {
+    const auto piece = pieces(k);
+    const auto material = [&](std::size_t l) -> const PieceMaterial& { return materials[group.edge(l, k)]; };
+    const Reals3 xj = gather3([&](std::size_t l) { return nodes.position[piece(l).node[1]]; });
+    const Reals3 vj = gather3([&](std::size_t l) { return nodes.velocity[piece(l).node[1]]; });
+    const Reals wj = gather([&](std::size_t l) { return nodes.inverse_mass[piece(l).node[1]]; });
+    const Reals b = gather([&](std::size_t l) { return piece(l).weight[1]; });
+    const Reals damping = gather([&](std::size_t l) { return material(l).damping; });
+    const Reals soft = gather([&](std::size_t l) { return material(l).stiffness; }) * dt;
+    const Reals before = gather([&](std::size_t l) { return impulse[group.edge(l, k)]; });
+    const Reals3 rate = b * (vj - vi), ahead = b * (xj - xi) + (none + dt) * rate;
+    const Reals length = root(squared_norm(ahead));
+    const auto has_direction = length > 0;  // else it is folded to a point
+    const Reals inverse_length = has_direction ? 1 / length : none;
+    EdgeLanes& edge = edges[k];
+    Reals3& d = edge.direction;
+    d.x = has_direction ? ahead.x * inverse_length : direction_before.x;
+    d.y = has_direction ? ahead.y * inverse_length : direction_before.y;
+    d.z = has_direction ? ahead.z * inverse_length : direction_before.z;
+    const Reals reach = damping + dt, softness = 1 / soft;
+    const Reals beside = -b * b_before * wi * dot(d, direction_before);
+    const Reals lower = reach * beside, upper_before = reach_before * beside;
+    if (k > 0) edges[k - 1].upper = upper_before;
+    const Reals inverse = 1 / (softness + reach * b * b * (wi + wj) - lower * upper_before);
+    edge.strain = length - 1 + damping * dot(d, rate) + before * softness;
+    edge.change = change_before = (-edge.strain - lower * change_before) * inverse;
+    reach_before = reach * inverse;
+    b_before = b, direction_before = d;
+    xi = xj, vi = vj, wi = wj;
+  }
+}
+
+// One pass over the edges of up to four threads: the changes of their impulses, given to the nodes.
+template <class Piece>
+void solve_stretch(const ThreadList<Piece>& threads, const ThreadGroup<Piece>& group, const std::vector<PieceMaterial>& materials,
+                   const NodeMotion& nodes, Real dt, ThreadSolve& work) {
+  EdgeLanes* const edges = work.edges.data() + group.first[group.longest];
+  eliminate(threads, group, materials, nodes, dt, work.impulse, edges);
+  constexpr bool is_spring = std::is_same_v<Piece, SpringPiece>;
+  const auto material_of = [&](std::size_t k) {
+    return [&, k](std::size_t l) -> const PieceMaterial& { return materials[group.edge(l, k)]; };
+  };
+  struct {
+    Reals turn{}, greatest{}, squares{}, area{};
+  } outcome;
+  const Reals none{};
+  Reals after{};                    // change of the edge after
+  Reals3 v{none, none, none};       // of the second node of the edge, with what the edge after gave
+  Reals wj{};
+  for (std::size_t k = group.length[group.longest]; k-- > 0;) {
+    EdgeLanes& edge = edges[k];
+    for (std::size_t l = 0; l < group.count; ++l) {
+      if (k + 1 == group.length[l]) {
+        const Index last = threads.pieces[group.edge(l, k)].node[1];
+        set_lane(v, l, nodes.velocity[last]);
+        wj[l] = nodes.inverse_mass[last], edge.upper[l] = 0;
+      } else if (!group.has(l, k)) {
+        edge.change[l] = edge.upper[l] = edge.strain[l] = 0;
+      }
     }
-    b_before = b;
-    direction_before = direction;
-  }
-  // Up: the impulses, given to the nodes.
-  PassOutcome outcome;
-  Real after = 0;
-  for (std::size_t e = end; e-- > first;) {
-    const Piece& piece = threads.pieces[e];
-    const Real change = after = work.change[e] - (e + 1 < end ? work.upper[e] * after : 0);
-    const Real b = piece.weight[1];
-    const Vec3 given = (b * change) * work.direction[e];
-    nodes.give(piece.node[0], -given);
-    nodes.give(piece.node[1], given);
-    const Real all = work.impulse[e] += change;
-    const Real reach = dt * b * b * (nodes.inverse_mass[piece.node[0]] + nodes.inverse_mass[piece.node[1]]);
-    outcome.turn = std::max(outcome.turn, std::abs(all) * reach);
+    const auto piece = [&](std::size_t l) -> const Piece& { return threads.pieces[group.edge(l, k)]; };
+    const Reals b = gather([&](std::size_t l) { return piece(l).weight[1]; });
+    const Reals wi = gather([&](std::size_t l) { return nodes.inverse_mass[piece(l).node[0]]; });
+    const Reals3 vi = gather3([&](std::size_t l) { return nodes.velocity[piece(l).node[0]]; });
+    const Reals change = edge.change - edge.upper * after;
+    after = edge.change = change;
+    const Reals3 given = (b * change) * edge.direction;
+    v += wj * given;
+    const Reals turn = dt * b * b * (wi + wj);
+    Reals all{};
+    for (std::size_t l = 0; l < group.count; ++l) {
+      if (!group.has(l, k)) continue;
+      const auto [i, j] = piece(l).node;
+      if (wj[l] > 0) nodes.velocity[j] = lane_of(v, l);
+      else nodes.held[j] += lane_of(given, l);
+      if (!(wi[l] > 0)) nodes.held[i] -= lane_of(given, l);
+      all[l] = work.impulse[group.first[l] + k] += change[l];
+    }
+    outcome.turn = greater(outcome.turn, size_of(all) * turn);
     // Lines of springs cross each other far more closely than threads: what they change counts, as in relaxation.
-    outcome.add(std::is_same_v<Piece, SpringPiece> ? std::abs(change) * reach : moved_strain(work.strain[e], change, materials[e], dt),
-                area_of(piece));
+    const Reals changed = is_spring ? size_of(change) * turn : moved_strain(edge, material_of(k), dt);
+    const Reals area = gather([&](std::size_t l) { return group.has(l, k) ? area_of(piece(l)) : 0; });
+    outcome.greatest = greater(outcome.greatest, changed);
+    outcome.squares += area * changed * changed, outcome.area += area;
+    v = vi - wi * given;
+    wj = wi;
   }
-  outcome.solved = end - first;
-  return outcome;
+  for (std::size_t l = 0; l < group.count; ++l) {
+    if (wj[l] > 0) nodes.velocity[threads.pieces[group.first[l]].node[0]] = lane_of(v, l);
+    work.outcome[group.thread[l]] = {.turn = outcome.turn[l], .greatest = outcome.greatest[l], .squares = outcome.squares[l],
+                                     .area = outcome.area[l], .solved = group.length[l]};
+  }
 }
 
 Vec3 product(const Vec3 (&row)[3], const Vec3& v) { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
@@ -151,9 +235,22 @@ PassOutcome solve_tense_stretch(const ThreadList<Piece>& threads, std::size_t fi
   return outcome;
 }
 
-// From numbers to vectors, after the first pass.
-void tighten(std::size_t first, std::size_t end, ThreadSolve& work) {
-  for (std::size_t e = first; e < end; ++e) work.given[e] = work.impulse[e] * work.direction[e];
+// From numbers to vectors, after the first pass; the threads of a group that turn too much.
+template <class Piece>
+void tighten(const ThreadGroup<Piece>& group, ThreadSolve& work) {
+  const EdgeLanes* const edges = work.edges.data() + group.first[group.longest];
+  for (std::size_t l = 0; l < group.count; ++l) {
+    PassOutcome& outcome = work.outcome[group.thread[l]];
+    if (outcome.turn > tense_turn) {
+      for (std::size_t k = 0; k < group.length[l]; ++k) {
+        const std::size_t e = group.first[l] + k;
+        work.direction[e] = lane_of(edges[k].direction, l);
+        work.given[e] = work.impulse[e] * work.direction[e];
+      }
+      work.tense[group.thread[l]] = 1, outcome.tightened = true;
+    }
+    outcome.turn = 0;
+  }
 }
 
 // The nodes [first, end) of one thread, without its ends. Rows are divided by dt + beta, which makes the matrix symmetric.
@@ -193,15 +290,17 @@ void solve_bend(const ThreadList<BendPiece<3>>& threads, std::size_t first, std:
   }
 }
 
-// Calls solve(thread) for all threads, family by family.
+// Calls solve(first thread, end) for tiles of all threads, family by family.
 template <class Piece, class Solve>
-void for_threads(const ThreadList<Piece>& threads, Solve&& solve) {
-  const auto family = [&](std::size_t begin, std::size_t end) {
-    if (begin == end) return;
+void for_tiles(const ThreadList<Piece>& threads, Solve&& solve) {
+  for (std::size_t f = 0; f + 1 < threads.families.size(); ++f) {
+    const std::size_t begin = threads.families[f], end = threads.families[f + 1];
+    if (begin == end) continue;
     const std::size_t length = std::max<std::size_t>(1, threads.first[begin + 1] - threads.first[begin]);
-    parallel_for(end - begin, [&](std::size_t k) { solve(begin + k); }, std::max<std::size_t>(1, 1024 / length));
-  };
-  for (std::size_t f = 0; f + 1 < threads.families.size(); ++f) family(threads.families[f], threads.families[f + 1]);
+    const std::size_t tile = std::max<std::size_t>(1, 1024 / length);
+    parallel_tiles(end - begin, [&](std::size_t a, std::size_t b) { solve(begin + a, begin + b); },
+                   (tile + lanes - 1) / lanes * lanes);
+  }
 }
 
 }  // namespace
@@ -209,8 +308,8 @@ void for_threads(const ThreadList<Piece>& threads, Solve&& solve) {
 template <class Piece>
 void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work) {
   const std::size_t n = threads.pieces.size();
-  work.direction.resize(n), work.upper.resize(n), work.change.resize(n);
-  work.strain.resize(n), work.given.resize(n), work.block.resize(n);
+  work.edges.resize(n);
+  if (!std::is_same_v<Piece, SpringPiece>) work.direction.resize(n), work.strain.resize(n), work.given.resize(n), work.block.resize(n);
   work.impulse.assign(n, 0);
   work.outcome.resize(threads.size());
   work.tense.assign(threads.size(), 0);
@@ -219,24 +318,26 @@ void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work) {
 template <class Piece>
 PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
                                  const NodeMotion& nodes, Real dt, ThreadSolve& work, const PassScope& scope) {
-  for_threads(threads, [&](std::size_t t) {
-    PassOutcome& outcome = work.outcome[t];
-    const std::size_t first = threads.first[t], end = threads.first[t + 1];
-    if (scope.skips(outcome)) {
-      outcome.solved = 0;
-      return;
+  for_tiles(threads, [&](std::size_t begin, std::size_t end) {
+    ThreadGroup<Piece> group;
+    const auto solve_group = [&] {
+      if (group.count == 0) return;
+      solve_stretch(threads, group, materials, nodes, dt, work);
+      if (!std::is_same_v<Piece, SpringPiece>) tighten(group, work);
+      group = {};
+    };
+    for (std::size_t t = begin; t < end; ++t) {
+      PassOutcome& outcome = work.outcome[t];
+      if (scope.skips(outcome)) {
+        outcome.solved = 0;
+      } else if (work.tense[t]) {
+        outcome = solve_tense_stretch(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work);
+      } else {
+        group.add(threads, t);
+        if (group.count == lanes) solve_group();
+      }
     }
-    if (work.tense[t]) {
-      outcome = solve_tense_stretch(threads, first, end, materials, nodes, dt, work);
-      return;
-    }
-    outcome = solve_stretch(threads, first, end, materials, nodes, dt, work);
-    if (std::is_same_v<Piece, SpringPiece>) return;
-    if (outcome.turn > tense_turn) {
-      tighten(first, end, work);
-      work.tense[t] = 1, outcome.tightened = true;
-    }
-    outcome.turn = 0;
+    solve_group();
   });
   PassOutcome all;
   for (PassOutcome& outcome : work.outcome) all += outcome, outcome.tightened = false;
@@ -250,18 +351,23 @@ template PassOutcome solve_thread_stretch(const ThreadList<StretchPiece<2>>&, co
 template PassOutcome solve_thread_stretch(const ThreadList<SpringPiece>&, const std::vector<PieceMaterial>&,
                                           const NodeMotion&, Real, ThreadSolve&, const PassScope&);
 
-void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt) {
-  for_threads(threads, [&](std::size_t t) {
-    for (std::size_t k = threads.first[t]; k < threads.first[t + 1]; ++k)
-      if (threads.pieces[k].kind != SpringKind::flexion) correct_stretch(threads.pieces[k], nodes, limit, dt);
+void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt,
+                     const ThreadSolve& work) {
+  for_tiles(threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::size_t first = threads.first[t];
+      if (work.outcome[t].solved == 0 || threads.pieces[first].kind == SpringKind::flexion) continue;
+      for (std::size_t k = first; k < threads.first[t + 1]; ++k) correct_stretch(threads.pieces[k], nodes, limit, dt);
+    }
   });
 }
 
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
                        const NodeMotion& nodes, Real dt, ThreadSolve& work) {
   work.bend.resize(threads.pieces.size());
-  for_threads(threads, [&](std::size_t t) {
-    solve_bend(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work.bend);
+  for_tiles(threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      solve_bend(threads, threads.first[t], threads.first[t + 1], materials, nodes, dt, work.bend);
   });
 }
 

@@ -7,7 +7,7 @@
 // carry the nodes in dt, C'_e strain rate, w 1/mass, k_e and beta_e as in impulse.h, D C' what all J change.
 // Bending, unknowns the vectors J_i [N s]: the same with the linear form s_i = x_(i-1) - 2 x_i + x_(i+1) for C.
 // The matrices have three and five diagonals and are positive, so one sweep down and one up solve them, at about the cost
-// of one relaxation of the pieces.
+// of one relaxation of the pieces. Each step of a sweep waits for the one before, so four threads go side by side.
 //
 // Why: relaxing edges one by one leaves each thread longer by dt^2 times its tension over a nodal mass, which for a cloth
 // hung up by an edge asks for substeps of tens of microseconds. Here tension passes through a whole thread in one substep,
@@ -27,21 +27,29 @@
 #include <vector>
 
 #include "imbibe/cloth/impulse.h"
+#include "imbibe/cloth/lanes.h"
 #include "imbibe/cloth/topology.h"
 
 namespace imbibe {
 
 struct PieceMaterial;
 
+// One edge of each of four threads that are solved side by side.
+struct EdgeLanes {
+  Reals3 direction;
+  Reals upper;         // eliminated upper diagonal
+  Reals change;        // right-hand side of a pass, then what it adds to J
+  Reals strain;        // that the pass found: C~ + beta C' + J/(dt k)
+};
+
 // Work space of the edges, thread by thread.
 struct ThreadSolve {
-  std::vector<Vec3> direction;
-  std::vector<Real> upper, change;   // eliminated upper diagonal; right-hand side of a pass
+  std::vector<EdgeLanes> edges;      // four threads use the places of the longest of them
   std::vector<Real> impulse;         // J of all passes [J s]
   std::vector<PassOutcome> outcome;  // of each thread
-  std::vector<Real> strain;          // that a pass found: C~ + beta C' + J/(dt k)
   std::vector<std::uint8_t> tense;   // threads solved with their tension
-  std::vector<Vec3> given;           // P of all passes, of tense threads
+  std::vector<Vec3> direction, given;  // of tense threads: where the last pass found them, P of all passes
+  std::vector<Real> strain;            // of tense threads, as in EdgeLanes
   struct Block {                     // N = (1/E + S)^-1, S what the edges before leave; and the right-hand side
     Vec3 row[3]{}, side{};
   };
@@ -62,8 +70,9 @@ void begin_thread_stretch(const ThreadList<Piece>& threads, ThreadSolve& work);
 template <class Piece>
 PassOutcome solve_thread_stretch(const ThreadList<Piece>& threads, const std::vector<PieceMaterial>& materials,
                                  const NodeMotion& nodes, Real dt, ThreadSolve& work, const PassScope& scope = {});
-// Provot's correction (impulse.h) of the springs of all lines but those of flexion.
-void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt);
+// Provot's correction (impulse.h) of the springs of all lines but those of flexion, where the pass before solved a line.
+void correct_threads(const ThreadList<SpringPiece>& threads, const NodeMotion& nodes, Real limit, Real dt,
+                     const ThreadSolve& work);
 void solve_thread_bend(const ThreadList<BendPiece<3>>& threads, const std::vector<PieceMaterial>& materials,
                        const NodeMotion& nodes, Real dt, ThreadSolve& work);
 
