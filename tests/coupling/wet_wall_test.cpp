@@ -13,7 +13,7 @@ TEST(WetWall, ADryFaceShowsTheYarnsAdvancingAngle) {
   const Placement placement;
   const Shape shape = sheet_shape(fabric.network, placement);
   const std::vector<float> dry(fabric.network.nodes(), 0);
-  const Wall wall = wet_wall(shape, fabric.network, placement, map, dry);
+  const Wall wall = wet_wall(shape, placement, map, dry);
   EXPECT_NEAR(wall.angles_at({0, 0, 0.5e-3}).cos_advancing, std::cos(radians(45)), 1e-6);
 }
 
@@ -33,7 +33,7 @@ TEST(WetWall, AMixedClothShowsTheMeanOfItsYarns) {
   const Placement placement;
   const Shape shape = sheet_shape(fabric.network, placement);
   const std::vector<float> dry(fabric.network.nodes(), 0);
-  const Wall wall = wet_wall(shape, fabric.network, placement, map, dry);
+  const Wall wall = wet_wall(shape, placement, map, dry);
   // Equal shares of cotton (45) and polypropylene (100) within the reach of the kernel.
   EXPECT_NEAR(wall.angles_at({0, 0, 0.5e-3}).cos_advancing, 0.5 * (std::cos(radians(45)) + std::cos(radians(100))), 0.02);
 }
@@ -48,7 +48,7 @@ TEST(FaceMap, FindsEveryNodeWithinReach) {
       return std::hypot(c.x - at.x, c.y - at.y) < map.reach;
     };
     for (Index k = 0; k < fabric.network.nodes(); ++k) all += within(k);
-    map.near(at.x, at.y, true, [&](Index k) { found += within(k); });
+    map.near(at.x, at.y, true, [&](const FaceMap::Node& n) { found += within(n.index); });
     EXPECT_EQ(found, all);
   }
 }

@@ -127,10 +127,10 @@ TEST(Boundary, several_walls_combine_and_their_gradients_add_up) {
 TEST(Boundary, a_wall_has_its_own_contact_angle_or_one_by_place) {
   const Shape plane = Plane{};
   Wall wall{&plane, {.contact_angle = radians(60)}, {}, false};
-  EXPECT_NEAR(sampled({{0, 0, 1e-3}}, {&wall, 1}).samples(0)[0].cos_contact_angle, 0.5, 1e-6);
+  EXPECT_NEAR(angles_at(wall, {0, 0, 1e-3}).cos_advancing, 0.5, 1e-6);
   wall.angles_at = [](const Vec3& x) { return x.x > 0 ? WallAngles{0.25f, 0.5f} : WallAngles{-0.25f, -0.25f}; };
-  EXPECT_EQ(sampled({{1, 0, 1e-3}}, {&wall, 1}).samples(0)[0].cos_contact_angle, 0.25f);
-  EXPECT_EQ(sampled({{-1, 0, 1e-3}}, {&wall, 1}).samples(0)[0].cos_contact_angle, -0.25f);
+  EXPECT_EQ(angles_at(wall, {1, 0, 1e-3}).cos_advancing, 0.25f);
+  EXPECT_EQ(angles_at(wall, {-1, 0, 1e-3}).cos_advancing, -0.25f);
 }
 
 TEST(Boundary, a_sheet_is_solid_ground_for_both_sides_and_separates_them) {

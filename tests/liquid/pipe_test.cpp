@@ -73,5 +73,28 @@ TEST(Pipe, TheSameSeedGivesTheSameJet) {
   EXPECT_NE(la.particles.position[5].x, lc.particles.position[5].x);
 }
 
+// The lattice around the mouth, 0.9 spacings wide, leaves gaps of 0.78 at most.
+TEST(Pipe, AMouthInLiquidGivesItsFlowWhenSubmergedAndWaitsOtherwise) {
+  for (const bool submerged : {true, false}) {
+    Source s = pipe();
+    s.submerged = submerged, s.radius = 0.003, s.length = 0.005;
+    Liquid l = liquid();
+    const Real dx = l.spacing();
+    const Vec3 middle = s.centre - 0.5 * s.length * normalized(s.velocity);
+    for (int x = -6; x <= 6; ++x)
+      for (int y = -6; y <= 6; ++y)
+        for (int z = -6; z <= 6; ++z) add_particle(l, middle + 0.9 * dx * Vec3{1.0 * x, 1.0 * y, 1.0 * z}, {});
+    const std::size_t old = l.particles.size();
+    const EmitReport r = emit(s, l, 0, 0.05);
+    EXPECT_EQ(r.waiting, !submerged);
+    EXPECT_EQ(l.particles.size() - old, submerged ? 15u : 0u);  // 300 per second
+    for (std::size_t i = old; i < l.particles.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Float4 &a = l.particles.position[i], &b = l.particles.position[j];
+        EXPECT_GT(norm(Vec3{a.x - b.x, a.y - b.y, a.z - b.z}), (submerged ? 0.39 : 0.79) * dx);
+      }
+  }
+}
+
 }  // namespace
 }  // namespace imbibe

@@ -1,4 +1,4 @@
-// The shape of a stain follows the cloth: a fifth of the particles, the first seconds.
+// The shape of a stain follows the cloth: half of the particles, the first seconds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ TEST(StainShape, OfCottonWarpAndPolypropyleneWeftGrowsAlongTheWarp) {
 }
 
 TEST(StainShape, OfADenseWeftIsLongerAlongTheWeft) {
-  World world = started("dense_weft", 5);
+  World world = started("dense_weft", 2);
   test::run_until(world, 2.5);
   const Extents late = extents(world);
   EXPECT_GT(late.weft, 1.1 * late.warp);

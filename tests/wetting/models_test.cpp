@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "imbibe/wetting/along_yarn.h"
 #include "imbibe/wetting/capillary.h"
@@ -105,6 +106,54 @@ TEST(AlongYarn, PressureAndSaturationAreInverseOnBothSidesOfTheKink) {
     EXPECT_NEAR(saturation_at(retention, pressure_at(retention, s).value), s, 1e-12);
   }
   EXPECT_NEAR(pressure_at(retention, 1.02).value, 600, 1e-9);
+}
+
+// A pore of cotton shirting: P_e 1200 Pa, rings of 9 % of it.
+constexpr Retention shirting_pore{.entry = 1.2e3, .size_index = 2, .open = 600, .overfill = 0.2, .corner_share = 0.09};
+
+TEST(PoreRetention, PressureAndSaturationAreInverseAndTheSlopeIsThatOfTheCurve) {
+  Real last = -std::numeric_limits<Real>::infinity();
+  for (const Real s : {1e-7, 1e-4, 0.01, 0.09, 0.3, 0.7, 0.99, 1.0, 1.1}) {
+    const Sloped p = pressure_at(shirting_pore, s);
+    EXPECT_NEAR(saturation_at(shirting_pore, p.value), s, 1e-12) << s;
+    EXPECT_GT(p.value, last) << s;
+    last = p.value;
+    if (s == 1) continue;  // the kink
+    const Real h = 1e-4 * s;  // second-order difference of a smooth curve, away from the kink
+    const Real slope = (pressure_at(shirting_pore, s + h).value - pressure_at(shirting_pore, s - h).value) / (2 * h);
+    EXPECT_NEAR(p.slope, slope, 1e-6 * slope) << s;
+  }
+}
+
+TEST(PoreRetention, RingsHoldTheirShareAtTheEntrySuctionAndTheMiddleEmptiesThere) {
+  EXPECT_EQ(pressure_at(shirting_pore, 1).value, -1.2e3);
+  // Far above P_e the rings alone are left, c (P_e/P)^2; the middle adds to them by (1 - c) (P_e/P)^2 of that, here 1 %.
+  EXPECT_NEAR(saturation_at(shirting_pore, -12e3), 0.09 * 0.01, 0.01 * 0.09 * 0.01);
+  // Nine tenths of the pore empty before the suction is 1.4 times the entry suction.
+  EXPECT_LT(saturation_at(shirting_pore, -1.4 * 1.2e3), 0.1);
+  Retention plain = shirting_pore;
+  plain.corner_share = 1;
+  for (const Real s : {1e-4, 0.2, 0.8}) EXPECT_NEAR(pressure_at(plain, s).value, -1.2e3 / std::sqrt(s), 1e-9 * 1.2e3 / std::sqrt(s));
+}
+
+TEST(PoreRetention, TheShareOfTheRingsIsTheVolumeBetweenCrossedYarnsWhereTheyAreCloserThanTheMeniscusIsHigh) {
+  // Yarns of 80 and 120 um that touch, a meniscus of h = 4 um: midpoint sum of the exact gap over its plane.
+  constexpr Real x_radius = 80e-6, y_radius = 120e-6, height = 4e-6, side = 40e-6;
+  constexpr int cells = 400;
+  Real ring = 0;
+  for (int i = 0; i < cells; ++i) {
+    for (int j = 0; j < cells; ++j) {
+      const Real x = side * ((i + 0.5) / cells * 2 - 1), y = side * ((j + 0.5) / cells * 2 - 1);
+      const Real gap = x_radius - std::sqrt(x_radius * x_radius - x * x) + y_radius - std::sqrt(y_radius * y_radius - y * y);
+      if (gap < height) ring += gap * (2 * side / cells) * (2 * side / cells);
+    }
+  }
+  // c V_p (P_e/P)^2 with h = r_t P_e/P. Parabolas for circles: wrong by about h/2r, 2.5 %.
+  constexpr Real throat = 90e-6, volume = 20e-12;
+  EXPECT_NEAR(pore_ring_share(x_radius, y_radius, throat, volume) * volume * (height / throat) * (height / throat), ring, 0.025 * ring);
+  // 30 x 28 yarns of 172 um per cm: 9 % of a pore of .189 mm times the cell.
+  EXPECT_NEAR(pore_ring_share(86e-6, 86e-6, 85.6e-6, 0.189e-3 / (3000 * 2800)), 0.088, 0.001);
+  EXPECT_EQ(pore_ring_share(86e-6, 86e-6, 85.6e-6, 1e-13), 1) << "a pore that is all corners";
 }
 
 TEST(AlongYarn, ThePotentialIsTheIntegralOfThePermeability) {

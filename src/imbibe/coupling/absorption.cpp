@@ -13,8 +13,14 @@ void book_taken(const Footprint& f, std::span<Real> taken_kg, Particles& particl
   }
   std::vector<Real> cover(f.supplies.size(), 0);
   for (const FootprintLink& link : f.links) cover[f.supply_of_node[link.node]] += link.share;
+  std::vector<Real> from_film(f.patches.size(), 0);  // beyond the particles (film.h): owed by all of the patch
+  for (std::size_t s = 0; s < f.supplies.size(); ++s) {
+    if (f.supply_patch[s] != no_index && !(cover[s] > 0))
+      from_film[f.supply_patch[s]] += taken_kg[s] / static_cast<Real>(f.patches[f.supply_patch[s]].particles);
+  }
   for (std::size_t p = 0; p < f.particle.size(); ++p) {
     Real& owed = particles.owed_kg[f.particle[p]];
+    owed += from_film[f.patch_of[p]];
     for (Index l = f.first_link[p]; l < f.first_link[p + 1]; ++l) {
       const Index s = f.supply_of_node[f.links[l].node];
       owed += taken_kg[s] * (f.links[l].share / cover[s]);

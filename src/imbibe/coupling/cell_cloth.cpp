@@ -197,14 +197,18 @@ bool gather_waiting(CellCloth& cloth, std::span<const std::uint8_t> held, std::s
   return cloth.waiting_kg[cell] >= kg;
 }
 
+bool any_cell_is_over_full(const CellCloth& cloth) {
+  for (std::size_t c = 0; c < cloth.grid->cells(); ++c)
+    if (cloth.contents.content_kg[c] > cloth.grid->capacity(c)) return true;
+  return false;
+}
+
 // Drops that hang where cells have room again, and nothing leaks, are drawn back into the cloth.
 void draw_back(CellCloth& cloth) {
   constexpr Real least_share = 0.05;  // of the capacity: not a parcel in every step
   const CellGrid& grid = *cloth.grid;
   CellContents& contents = cloth.contents;
-  if (!cloth.params.absorb || waiting_kg(cloth) == 0) return;
-  for (std::size_t c = 0; c < grid.cells(); ++c)
-    if (contents.content_kg[c] > grid.capacity(c)) return;
+  if (!cloth.params.absorb || waiting_kg(cloth) == 0 || any_cell_is_over_full(cloth)) return;
   for (Index c = 0; c < grid.cells(); ++c) {
     const Real room = grid.capacity(c) - contents.content_kg[c], kg = std::min(room, cloth.waiting_kg[c]);
     if (!(kg > 0) || (kg < cloth.waiting_kg[c] && kg < least_share * grid.capacity(c))) continue;
@@ -365,13 +369,14 @@ void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid
   const Real reach = touch_spacings * liquid.spacing() + 0.5 * cloth.soft.cloth.hand.thickness;
   Bounds near_sheet = scratch.surface.at_end.nodes[0].bounds;
   near_sheet.grow(reach);
+  const bool leaks = any_cell_is_over_full(cloth);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec3 x = xyz(p.position[i]);
     if (dead[i] || !near_sheet.contains(x)) continue;
     const NearestOnSheet near = nearest_on(scratch.surface, x, reach);
     if (near.at.triangle == no_index || near.on_border) continue;
-    // What hangs under the sheet or flies off is leaving it.
-    if (dot(near.normal, gravity) > 0 ||
+    // What hangs under a sheet that leaks, or flies off, is leaving it. What still hangs there when nothing leaks is drawn back.
+    if ((leaks && dot(near.normal, gravity) > 0) ||
         dot(near.normal, xyz(p.velocity[i]) - velocity_at(cloth.soft.sheet, near.at)) > 0.5 * std::sqrt(norm(gravity) * liquid.spacing()))
       continue;
     const Vec3 m = material(cloth.soft.sheet, near.at);

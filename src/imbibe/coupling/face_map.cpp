@@ -69,10 +69,13 @@ FaceMap build_face_map(const YarnNetwork& network, Real particle_spacing) {
     if (has_face(k)) ++map.first[bin_of[k] + 1];
   }
   std::partial_sum(map.first.begin(), map.first.end(), map.first.begin());
-  map.node.resize(map.first.back());
+  map.nodes.resize(map.first.back());
   std::vector<Index> next(map.first.begin(), map.first.end() - 1);
   for (std::size_t k = 0; k < nodes; ++k)
-    if (has_face(k)) map.node[next[bin_of[k]]++] = static_cast<Index>(k);
+    if (has_face(k)) {
+      const Vec3& c = network.node_centre(k);
+      map.nodes[next[bin_of[k]]++] = {c.x, c.y, static_cast<Index>(k), map.on_upper[k], map.on_lower[k]};
+    }
 
   map.face_area.assign(nodes, static_cast<float>(network.pitch_x * network.pitch_y));
   for (std::size_t p = 0; p < network.pores(); ++p)

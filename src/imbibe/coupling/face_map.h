@@ -18,23 +18,28 @@ struct FaceMap {
   Real x0 = 0, y0 = 0;  // m, lower corner of the bins
   int bins_x = 0, bins_y = 0;
   std::vector<Index> first;      // size bins + 1; nodes of all layers that have a free face
-  std::vector<Index> node;       // nodes bin by bin
+  // Nodes bin by bin, with what a search asks of them side by side.
+  struct Node {
+    Real x = 0, y = 0;  // m, of its centre
+    Index index = 0;
+    std::uint8_t upper = 0, lower = 0;  // as on_upper, on_lower
+  };
+  std::vector<Node> nodes;
   std::vector<float> face_area;  // m2 per node: plan area that the node drains
   std::vector<float> cos_advancing;  // per node: cosine of the advancing angle of the yarns there (area mean for pores)
   std::vector<float> cos_receding;
   std::vector<std::uint8_t> on_upper, on_lower;  // per node: liquid on that face touches it
 
-  // Calls visit(node) for the nodes of the upper or lower face in the 3 x 3 bins around (x, y): all within reach and some
+  // Calls visit(const Node&) for the nodes of the upper or lower face in the 3 x 3 bins around (x, y): all within reach and some
   // beyond.
   template <class Visit>
   void near(Real x, Real y, bool upper, Visit&& visit) const {
-    const std::vector<std::uint8_t>& on_face = upper ? on_upper : on_lower;
     const int bx = static_cast<int>(std::floor((x - x0) / bin)), by = static_cast<int>(std::floor((y - y0) / bin));
     for (int j = std::max(by - 1, 0); j <= std::min(by + 1, bins_y - 1); ++j)
       for (int i = std::max(bx - 1, 0); i <= std::min(bx + 1, bins_x - 1); ++i) {
         const std::size_t b = static_cast<std::size_t>(j) * bins_x + i;
         for (Index k = first[b]; k < first[b + 1]; ++k)
-          if (on_face[node[k]]) visit(node[k]);
+          if (upper ? nodes[k].upper : nodes[k].lower) visit(nodes[k]);
       }
   }
 };

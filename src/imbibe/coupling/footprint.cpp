@@ -14,14 +14,14 @@ void clear(Footprint& f, std::size_t nodes) {
 }
 
 // Links of one touching particle at sheet position p, and its share of the wetted area of the nodes.
-void add_links(const YarnNetwork& network, const FaceMap& map, const Vec3& p, Real particle_area, Footprint& f) {
+void add_links(const FaceMap& map, const Vec3& p, Real particle_area, Footprint& f) {
   const bool below = p.z < 0;
   const std::size_t begin = f.links.size();
   Real total = 0;
-  map.near(p.x, p.y, !below, [&](Index k) {
-    const Vec3& c = network.node_centre(k);
-    const Real w = face_kernel(portable::hypot(p.x - c.x, p.y - c.y), map.reach);
+  map.near(p.x, p.y, !below, [&](const FaceMap::Node& n) {
+    const Real w = face_kernel(portable::hypot(p.x - n.x, p.y - n.y), map.reach);
     if (w <= 0) return;
+    const Index k = n.index;
     f.links.push_back({k, w * map.face_area[k]});
     total += f.links.back().share;
     if (f.supply_of_node[k] == no_index) {
@@ -115,7 +115,7 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Clot
     const Vec3 p = place.to_sheet({x.x, x.y, x.z});
     if (std::abs(p.z) > reach_z || std::abs(p.x) > half_x || std::abs(p.y) > half_y) continue;
     const std::size_t before = f.links.size();
-    add_links(network, map, p, dx * dx, f);
+    add_links(map, p, dx * dx, f);
     if (f.links.size() == before) {  // beside the last node of the border: nothing to touch
       f.first_link.pop_back();
       continue;

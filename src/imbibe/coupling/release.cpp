@@ -53,7 +53,7 @@ class NearFaces {
 // Waiting mass of the nodes of a face within reach of `centre`.
 Real waiting_near(const FaceMap& map, const Vec3& centre, bool upper, const ExchangeState& exchange) {
   Real sum = 0;
-  map.near(centre.x, centre.y, upper, [&](Index k) { sum += exchange.waiting_kg[k]; });
+  map.near(centre.x, centre.y, upper, [&](const FaceMap::Node& n) { sum += exchange.waiting_kg[n.index]; });
   return sum;
 }
 
@@ -61,7 +61,8 @@ Real waiting_near(const FaceMap& map, const Vec3& centre, bool upper, const Exch
 Real take_near(const FaceMap& map, const Vec3& centre, bool upper, Real share, std::vector<Real>& momentum,
                ExchangeState& exchange) {
   Real taken = 0;
-  map.near(centre.x, centre.y, upper, [&](Index k) {
+  map.near(centre.x, centre.y, upper, [&](const FaceMap::Node& n) {
+    const Index k = n.index;
     exchange.waiting_kg[k] -= share * exchange.waiting_kg[k];
     taken += share * momentum[k];
     momentum[k] -= share * momentum[k];

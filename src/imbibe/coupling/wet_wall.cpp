@@ -8,16 +8,16 @@ Shape sheet_shape(const YarnNetwork& network, const Placement& placement) {
   return Box{placement.origin, {network.size_x, network.size_y, network.thickness}, {placement.u, placement.v, placement.n}};
 }
 
-std::function<WallAngles(const Vec3&)> wet_angles(const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
+std::function<WallAngles(const Vec3&)> wet_angles(const ClothPlace& place, const FaceMap& map,
                                                   std::span<const float> saturation) {
-  return [&network, place, &map, saturation](const Vec3& world) {
+  return [place, &map, saturation](const Vec3& world) {
     const Vec3 p = place.to_sheet(world);
     Real advancing = 0, receding = 0, weight = 0;
     if (std::isfinite(p.z)) {
-      map.near(p.x, p.y, p.z >= 0, [&](Index k) {
-        const Vec3& c = network.node_centre(k);
-        const Real x = p.x - c.x, y = p.y - c.y, d2 = x * x + y * y;
+      map.near(p.x, p.y, p.z >= 0, [&](const FaceMap::Node& n) {
+        const Real x = p.x - n.x, y = p.y - n.y, d2 = x * x + y * y;
         if (d2 >= map.reach * map.reach) return;  // two of three: the bins reach farther than the kernel
+        const Index k = n.index;
         const Real w = face_kernel(std::sqrt(d2), map.reach);
         advancing += w * cos_wet_face(map.cos_advancing[k], saturation[k]);
         receding += w * cos_wet_face(map.cos_receding[k], saturation[k]);
@@ -29,12 +29,12 @@ std::function<WallAngles(const Vec3&)> wet_angles(const YarnNetwork& network, co
   };
 }
 
-Wall wet_wall(const Shape& shape, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
+Wall wet_wall(const Shape& shape, const Placement& placement, const FaceMap& map,
               std::span<const float> saturation) {
   Wall wall;
   wall.shape = &shape;
   wall.two_sided = true;
-  wall.angles_at = wet_angles(network, placement, map, saturation);
+  wall.angles_at = wet_angles(placement, map, saturation);
   return wall;
 }
 

@@ -33,11 +33,11 @@ constexpr Real cos_wet_face(Real cos_theta, Real saturation) {
 Shape sheet_shape(const YarnNetwork& network, const Placement& placement);
 
 // The angles of a cloth's faces by place in the world, for one step; everything must outlive it.
-std::function<WallAngles(const Vec3&)> wet_angles(const YarnNetwork& network, const ClothPlace& place, const FaceMap& map,
+std::function<WallAngles(const Vec3&)> wet_angles(const ClothPlace& place, const FaceMap& map,
                                                   std::span<const float> saturation);
 
 // A wall for one step; `shape`, `saturation` (per node) and the rest must outlive it.
-Wall wet_wall(const Shape& shape, const YarnNetwork& network, const Placement& placement, const FaceMap& map,
+Wall wet_wall(const Shape& shape, const Placement& placement, const FaceMap& map,
               std::span<const float> saturation);
 
 }  // namespace imbibe

@@ -203,11 +203,6 @@ SolidSum sheet_sum(const Sheet& s, const SheetPlace& at, const Vec3& p, Real h) 
   return product.sum();
 }
 
-WallAngles angles_of(const WallMaterial& material) {
-  const auto advancing = static_cast<float>(portable::cos(material.contact_angle));
-  return {advancing, material.receding_angle < 0 ? advancing : static_cast<float>(portable::cos(material.receding_angle))};
-}
-
 // A soft sheet near a particle: a half-space behind its nearest point, on the particle's own side. Beside its outline
 // there is nothing of it.
 bool sample_soft(const PreparedWall& w, const Vec3& p, Real support, SurfaceSample& nearest, SolidSum& sum,
@@ -276,9 +271,6 @@ bool sample_wall(const PreparedWall& w, const Vec3& p, Real support, Boundary::M
   out.lambda = static_cast<float>(sum.lambda);
   out.gradient = Vec3f(sum.gradient);
   const Wall& wall = *w.wall;
-  const WallAngles angles = wall.angles_at ? wall.angles_at(p) : angles_of(wall.material);
-  out.cos_contact_angle = angles.cos_advancing;
-  out.cos_receding_angle = std::max(angles.cos_advancing, angles.cos_receding);
   // A quarter of a spacing is where the outermost layer rests; nearer the rate would grow without bound.
   const Real nearest_layer = 0.25 * support / support_over_spacing;
   out.shear = static_cast<float>(wall.material.friction *
@@ -326,6 +318,16 @@ struct NearestSamples {
 };
 
 }  // namespace
+
+WallAngles angles_at(const Wall& wall, const Vec3& place) {
+  const auto cosine = [](Real angle) { return static_cast<float>(portable::cos(angle)); };
+  const WallMaterial& m = wall.material;
+  WallAngles angles;
+  if (wall.angles_at) angles = wall.angles_at(place);
+  else angles = {cosine(m.contact_angle), cosine(m.receding_angle < 0 ? m.contact_angle : m.receding_angle)};
+  angles.cos_receding = std::max(angles.cos_advancing, angles.cos_receding);
+  return angles;
+}
 
 void sample_walls(Boundary& boundary, std::span<const Float4> position, std::size_t count, std::span<const Wall> walls,
                   const Kernel& kernel) {

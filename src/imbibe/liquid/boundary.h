@@ -30,8 +30,6 @@ struct WallSample {
   Vec3f push{};                 // this wall's part of P, weighted alike; density.h takes out walls across a gap
   float seen_contact = 1;       // as the particle alone sees it: 1 where liquid reaches this wall, 0 across a gap
   float contact = 1;            // with what the liquid below it sees (density.h)
-  float cos_contact_angle = 0;
-  float cos_receding_angle = 0;  // the same without hysteresis
   float friction = 0;
   Vec3f velocity{};             // of the surface along itself, m/s
   float shear = 0;              // friction * half_space_shear (kernel.h), 1/m2

@@ -5,9 +5,12 @@
 //   vortex  u = U sin(pi x/a) cos(pi y/b), v = -U (b/a) cos(pi x/a) sin(pi y/b), x and y from the box's corner, a x b its size
 // A pipe lets go single particles at a steady rate, each from a random place inside its bore (counter-based random: seed,
 // number of the particle), with a constant velocity along it. Particles due since the last step are carried on by what
-// they would have flown. Where eight random places are all taken, the particle waits.
-// Particles are seeded on a lattice of the liquid's density, drops on a cubic one, boxes on a body-centred one. The supplied mass is exactly (number of particles) x
-// (particle mass); the number is the wanted volume over the particle volume, rounded, and the difference is carried to
+// they would have flown. Where eight random places are all taken, the particle waits. A mouth
+// that lies in liquid (`submerged`) would wait for ever: its particle takes the widest of the eight gaps instead, if it is
+// 0.4 spacings or more, and pushes its neighbours away as any error of density does, by displacement without velocity.
+// Particles are seeded on a lattice of the liquid's density, drops on a cubic one, boxes on a body-centred one whose kernel sum is
+// that of liquid that has flowed (disorder_excess, kernel.h), 0.6 % denser. The supplied mass is exactly
+// (number of particles) x (particle mass); the number is the wanted volume over the particle volume, rounded, and the difference is carried to
 // the source's next drop, so a dropper's total is right to half a particle.
 // A drop that would overlap liquid already there waits until the place is free: never two particles in one place.
 #pragma once
@@ -39,6 +42,7 @@ struct Source {
   int count = 1;             // drops; of a pipe, particles
   Real radius = 0;           // m, of a pipe's bore; its mouth is centred on `centre`, its axis lies along `velocity`
   Real length = 0;           // m, of the part of a pipe from whose random places particles start
+  bool submerged = false;    // a pipe's mouth lies in liquid, which makes room for what it gives
   std::uint64_t seed = 1;    // of a pipe's random places
 
   // Progress (state, saved in checkpoints).

@@ -221,15 +221,16 @@ LinePull line_pull(const Stage& t, std::size_t i, const WallSample& wall) {
   pull.curvature = seen.curvature;
   const float strength = bare_gradient(t, i, wall);
   pull.length = 4 * strength * tau * f.volume * activity;
-  pull.force = inward * (-t.gamma * pull.length *
-                         unbalanced_cosine(cosine, wall.cos_contact_angle, wall.cos_receding_angle));
+  const Float4& here = f.position[i];
+  const WallAngles angles = angles_at(t.walls[wall.wall], {here.x, here.y, here.z});
+  pull.force = inward * (-t.gamma * pull.length * unbalanced_cosine(cosine, angles.cos_advancing, angles.cos_receding));
   pull.inward = inward;
   // A line that moves inward feels the receding angle, one that moves outward the advancing one (contact_angle.h). Not on a woven
   // face, whose angles stand for yarns and what they hold: droplets of a splash that were held on wet cloth did not come down to it.
   if (!t.walls[wall.wall].two_sided) {
-    const float within = std::clamp(cosine, wall.cos_contact_angle, wall.cos_receding_angle);
-    pull.hold_in = t.gamma * pull.length * (wall.cos_receding_angle - within);
-    pull.hold_out = t.gamma * pull.length * (within - wall.cos_contact_angle);
+    const float within = std::clamp(cosine, angles.cos_advancing, angles.cos_receding);
+    pull.hold_in = t.gamma * pull.length * (angles.cos_receding - within);
+    pull.hold_out = t.gamma * pull.length * (within - angles.cos_advancing);
   }
   pull.drag = activity * static_cast<float>(t.params.contact.line_friction) * std::sqrt(t.gamma * f.spacing / f.rest_density) *
               strength / std::max(wall.distance, 0.3f * f.spacing);

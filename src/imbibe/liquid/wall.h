@@ -36,4 +36,8 @@ struct Wall {
   SheetWall* sheet = nullptr;
 };
 
+// The angles of a wall at a world point on it. Asked for where a contact line is (surface_tension.h), not of every particle near the
+// wall: on wet cloth an answer costs a sum over the yarns around.
+WallAngles angles_at(const Wall& wall, const Vec3& place);
+
 }  // namespace imbibe

@@ -277,6 +277,7 @@ Source source_of_pipe(const Scene& scene, std::size_t i, Real particle_mass, Rea
   s.form = SourceForm::pipe;
   s.centre = g.mouth, s.velocity = spec.speed * g.axis;
   s.radius = g.radius, s.length = g.length;
+  s.submerged = spec.submerged;
   s.volume = volume;
   s.start = spec.start;
   s.interval = 1 / rate_of(spec, volume);

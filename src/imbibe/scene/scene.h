@@ -140,6 +140,7 @@ struct PipeSpec {
   Real speed = 1;                      // m/s
   Real start = 0;                      // s
   std::optional<Real> stop;            // s
+  bool submerged = false;
 };
 
 template <class V>
@@ -158,6 +159,8 @@ void describe(V& v, PipeSpec& p) {
   v.value("speed", p.speed, {.unit = "m/s", .min = 0, .max = 100, .above_min = true, .help = "of the jet"});
   v.value("start", p.start, {.unit = "s", .min = 0, .help = "when it begins"});
   v.value("stop", p.stop, {.unit = "s", .min = 0, .help = "when it ends; default: never"});
+  v.value("submerged", p.submerged, {.help = "the mouth lies in liquid, which makes room for what the pipe gives; otherwise a "
+                                             "particle waits until its place is free"});
 }
 
 struct LiquidSpec {

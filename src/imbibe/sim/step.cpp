@@ -9,6 +9,7 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
 #include "imbibe/coupling/absorption.h"
+#include "imbibe/coupling/film.h"
 #include "imbibe/coupling/hem_drops.h"
 #include "imbibe/coupling/release.h"
 #include "imbibe/coupling/wet_wall.h"
@@ -75,12 +76,11 @@ void build_walls(const World& world, StepScratch& scratch) {
       SoftSheetScratch& own = sheet_of(world, t, scratch);
       Wall wall = sheet_as_wall(textile.cloth->soft, own);
       own.wall.half_thickness = 0.5 * textile.fabric->network.thickness;
-      wall.angles_at = wet_angles(textile.fabric->network, place_of(world, t, scratch), *textile.faces, s);
+      wall.angles_at = wet_angles(place_of(world, t, scratch), *textile.faces, s);
       scratch.walls.push_back(std::move(wall));
       continue;
     }
-    scratch.walls.push_back(
-        wet_wall(scratch.sheets[t], textile.fabric->network, textile.placement, *textile.faces, s));
+    scratch.walls.push_back(wet_wall(scratch.sheets[t], textile.placement, *textile.faces, s));
   }
 }
 
@@ -331,6 +331,7 @@ void exchange(World& world, std::size_t index, Real dt, StepScratch& scratch, St
   }
   Footprint& footprint = scratch.footprint;
   find_footprint(world.liquid, network, place, *textile.faces, world.gravity, textile.exchange, footprint);
+  spread_films(world.liquid, *textile.faces, *textile.model, textile.contents, textile.exchange, footprint);
   const WettingReport wetting = advance_network(world, index, dt, scratch);
   report.wetting_iterations += wetting.newton_iterations;
   next_interval = std::min(next_interval, wetting.suggested_step);

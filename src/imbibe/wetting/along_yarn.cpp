@@ -43,14 +43,16 @@ Sloped pressure_at(const Retention& r, Real saturation) {
     const Real slope = (r.entry + r.open) / r.overfill;
     return {-r.entry + slope * (saturation - 1), slope};
   }
-  if (saturation <= driest) return {-r.entry * portable::pow(driest, -1 / r.size_index), 0};
-  const Real suction = r.entry * portable::pow(saturation, -1 / r.size_index);
-  return {-suction, suction / (r.size_index * saturation)};
+  if (saturation <= driest) return {-r.entry * portable::pow(plain_saturation(r, driest), -1 / r.size_index), 0};
+  const Real suction = r.entry * portable::pow(plain_saturation(r, saturation), -1 / r.size_index);
+  const Real in_corners = r.corner_share / (r.corner_share + (1 - r.corner_share) * saturation);
+  return {-suction, suction / (r.size_index * saturation) * in_corners};
 }
 
 Real saturation_at(const Retention& r, Real pressure) {
   if (pressure >= -r.entry) return 1 + (pressure + r.entry) * r.overfill / (r.entry + r.open);
-  return portable::pow(-pressure / r.entry, -r.size_index);
+  const Real plain = portable::pow(-pressure / r.entry, -r.size_index);
+  return r.corner_share * plain / (1 - (1 - r.corner_share) * plain);
 }
 
 Real relative_permeability(Real saturation, Real size_index) {

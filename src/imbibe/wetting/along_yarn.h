@@ -3,7 +3,7 @@
 // physical    q = T [Psi(p_i - rho g dz/2) - Psi(p_j + rho g dz/2)],  T = K_a pi r^2/(eta l),  dz = z_j - z_i
 //     Gebart:       K_a = (8 R_f^2/53) eps^3/phi^2 / tau^2,  K_t = 0.231 R_f^2 (sqrt(0.9069/phi) - 1)^(5/2) / tau^2
 //     suction:      P_h = gamma cos(theta_a + alpha) 2 phi/(R_f eps),  P_e = P_h 0.5^(1/lambda)
-//     Brooks-Corey: P_c = P_e s^(-1/lambda),  k_r = s^(3 + 2/lambda)
+//     Brooks-Corey: P_c = P_e s^(-1/lambda),  k_r = s^(3 + 2/lambda)          (of pores between yarns see capillary.h)
 //     Kirchhoff:    Psi(p) = int k_r dp = P_e s^(3 + 1/lambda)/(3 lambda + 1) below s = 1, Psi(1) + (p + P_e) above
 //     over-full:    p rises in a straight line from -P_e at s = 1 to P_open at s = 1 + delta (bulging menisci)
 // kunzel      D_ws(s) = 3.8 (A_w/w_f)^2 1000^(s - 1); after the source is gone D_ww = D_ws/10
@@ -36,15 +36,19 @@ struct Sloped {
   Real value = 0, slope = 0;
 };
 
-// p(s) of a node: Brooks-Corey, then a straight line to `open` at 1 + overfill and beyond.
+// p(s) of a node: Brooks-Corey with x = s/(c + (1 - c) s) in place of s, then a straight line to `open` at 1 + overfill
+// and beyond. c = 1: plain Brooks-Corey, a yarn; c < 1: a pore whose middle empties at P_e (capillary.h).
 struct Retention {
   Real entry = 0;      // P_e > 0, Pa
   Real size_index = 5; // lambda
   Real open = 0;       // P_open, Pa
   Real overfill = 0.02;
+  Real corner_share = 1;  // c, 0 .. 1, above 0
 };
 inline constexpr Real driest = 1e-10;  // saturation below which the suction no longer grows
 
+// x: the saturation at which plain Brooks-Corey has the same pressure; s < 1.
+inline Real plain_saturation(const Retention& r, Real s) { return s / (r.corner_share + (1 - r.corner_share) * s); }
 Sloped pressure_at(const Retention& retention, Real saturation);
 // The saturation at pressure p (inverse of the above).
 Real saturation_at(const Retention& retention, Real pressure);

@@ -8,6 +8,11 @@ namespace imbibe {
 
 Real pore_throat_radius(Real gap_x, Real gap_y) { return gap_x * gap_y / (gap_x + gap_y); }
 
+Real pore_ring_share(Real radius_x, Real radius_y, Real throat, Real volume) {
+  constexpr Real least = 1e-3;  // keeps p(s) growing where the throat is next to nothing
+  return std::clamp<Real>(pi * std::sqrt(radius_x * radius_y) * throat * throat / volume, least, 1);
+}
+
 Real throat_suction(Real surface_tension, Real cos_angle, Real throat) {
   return 2 * surface_tension * cos_angle / throat;
 }

@@ -25,7 +25,7 @@ Sloped filling_pressure(const NodeKind& node, Real saturation_value) {
     const Real rise = std::sqrt(cling / s);
     return {slope * s - cling_suction * (rise - 1), slope + 0.5 * cling_suction * rise / s};
   }
-  return pressure_at({node.entry, node.size_index, node.open, node.overfill}, saturation_value);
+  return pressure_at(retention_of(node), saturation_value);
 }
 
 Sloped hysteretic_pressure(const WettingModel& m, std::size_t node, Real s, Real reached) {
@@ -33,10 +33,11 @@ Sloped hysteretic_pressure(const WettingModel& m, std::size_t node, Real s, Real
   if (s >= top || s <= driest || (node >= m.segments && !m.pore_wets(node - m.segments))) {
     return filling_pressure(m, node, s);
   }
-  const Real index = m.size_index(node);
-  const Real draining = m.entry_receding(node) * portable::pow(s, -1 / index);
-  const Real scanning = m.entry(node) * portable::pow(top, -1 / index) * portable::pow(top / s, scanning_power);
-  if (draining < scanning) return {-draining, draining / (index * s)};
+  Retention curve = retention_of(m.at(node));
+  const Real scanning = -pressure_at(curve, top).value * portable::pow(top / s, scanning_power);
+  curve.entry = m.entry_receding(node);
+  const Sloped draining = pressure_at(curve, s);
+  if (-draining.value < scanning) return draining;
   return {-scanning, scanning_power * scanning / s};
 }
 

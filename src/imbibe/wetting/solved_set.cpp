@@ -41,7 +41,8 @@ Real effective_entry(const WettingModel& m, const Work& w, Index local) {
   const Index node = w.active[local];
   const Real s = w.old_saturation[local];
   if (!m.params.hysteresis || s >= 1 || s <= driest) return m.entry(node);
-  return -w.pressure[local] * portable::pow(s, 1 / m.size_index(node));
+  const Retention curve = retention_of(m.at(node));
+  return -w.pressure[local] * portable::pow(plain_saturation(curve, s), 1 / curve.size_index);
 }
 
 // The weight of the column from a node down to the lower of `faces`, Pa; a node without one gives off nothing.

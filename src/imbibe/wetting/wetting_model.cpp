@@ -254,6 +254,7 @@ NodeKind pore_kind(const WettingModel& m, const YarnNetwork& network, const Pore
   kind.volume = m.params.pores ? network.pore_volume[i] : 0;
   kind.overfill = m.params.pore_overfill;
   kind.size_index = m.params.pore_size_index;
+  if (kind.volume > 0) kind.corner_share = pore_ring_share(opening.radius_x, opening.radius_y, kind.throat, kind.volume);
   // Half the way from face to face on average.
   const int faces = count_faces(kind.faces);
   kind.release_conductance = faces > 0 ? tube_conductance(kind.throat, m.liquid.viscosity, 0.5 * m.thickness) : 0;
@@ -282,7 +283,7 @@ void add_nodes(WettingModel& m, const YarnNetwork& network) {
   const auto round = [](NodeKind kind) {
     for (Real* value : {&kind.dry_mass, &kind.yarn_volume, &kind.volume, &kind.entry, &kind.entry_receding, &kind.open,
                         &kind.supply_conductance, &kind.release_conductance, &kind.vapour_area, &kind.throat,
-                        &kind.breakthrough, &kind.mouth})
+                        &kind.breakthrough, &kind.mouth, &kind.corner_share})
       *value = rounded(*value);
     return kind;
   };

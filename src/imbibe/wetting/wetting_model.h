@@ -135,6 +135,7 @@ struct NodeKind {
   Real volume = 0;            // m3 that s = 1 means: voids of the yarn, or the pore (both unswollen)
   Real entry = 0, entry_receding = 0, open = 0;  // Pa, as in YarnWetting
   Real overfill = 0, size_index = 0;
+  Real corner_share = 1;      // of a pore: what its menisci hold at P_e once the middle is empty (capillary.h)
   Real supply_conductance = 0;   // liquid on the face -> node, units as LinkKind; pores see capillary.h (a tube) except
                                  // in the model as printed
   Real release_conductance = 0;  // m3/(Pa s), over-full node -> its faces
@@ -235,6 +236,9 @@ struct WettingModel {
   RadialShells shells;                // sorption = shells
 };
 
+inline Retention retention_of(const NodeKind& kind) {
+  return {kind.entry, kind.size_index, kind.open, kind.overfill, kind.corner_share};
+}
 // p(s) of a node on its filling branch; a pore that does not wet pushes its liquid out at every content.
 Sloped filling_pressure(const NodeKind& node, Real saturation);
 inline Sloped filling_pressure(const WettingModel& model, std::size_t node, Real saturation) {
