@@ -7,6 +7,7 @@
 #include "imbibe/core/parallel.h"
 #include "imbibe/view/liquid_surface.h"
 #include "imbibe/view/shape_mesh.h"
+#include "imbibe/view/smooth_surface_value.h"
 
 namespace imbibe {
 
@@ -60,7 +61,17 @@ struct SolidPart {
   Vec3f colour;
   std::vector<float> saturation{};           // of a cloth
   std::vector<std::array<float, 2>> uv{};
+  std::vector<Slope> slope{};                // of the saturation in uv
 };
+
+SolidPart part_of(const DrawnCloth& cloth) {
+  SolidPart part{cloth.mesh, cloth.colour, cloth.saturation, cloth.uv};
+  if (!cloth.uv.empty()) {
+    part.saturation = averaged_values(cloth.mesh.triangles, cloth.uv, cloth.saturation);
+    part.slope = corner_slopes(cloth.mesh.triangles, cloth.uv, part.saturation);
+  }
+  return part;
+}
 
 // One cubic piece of a yarn: it spans some steps of the yarn's centre line.
 struct Piece {
@@ -133,7 +144,7 @@ void RayScene::Parts::build_solids() {
     if (!mesh.triangles.empty()) parts.push_back({std::move(mesh), solid.colour});
   }
   for (const DrawnCloth& cloth : cloths)
-    if (!cloth.mesh.triangles.empty()) parts.push_back({cloth.mesh, cloth.colour, cloth.saturation, cloth.uv});
+    if (!cloth.mesh.triangles.empty()) parts.push_back(part_of(cloth));
   for (unsigned i = 0; i < parts.size(); ++i) attach_mesh(device.get(), solids.get(), parts[i].mesh, i);
   if (yarns.yarns() > 0) prepare_yarns();
   yarn_geometry = end_geometry = RTC_INVALID_GEOMETRY_ID;
@@ -309,8 +320,12 @@ bool RayScene::meets_solid(const Ray& ray, float limit, SolidHit& hit) const {
       const auto& t = part.mesh.triangles[found.hit.primID];
       const float a = 1 - found.hit.u - found.hit.v, b = found.hit.u, c = found.hit.v;
       hit.cloth = true;
-      hit.saturation = a * part.saturation[t[0]] + b * part.saturation[t[1]] + c * part.saturation[t[2]];
-      if (!part.uv.empty()) {
+      const std::array<float, 3> values{part.saturation[t[0]], part.saturation[t[1]], part.saturation[t[2]]};
+      if (part.uv.empty()) {
+        hit.saturation = a * values[0] + b * values[1] + c * values[2];
+      } else {
+        hit.saturation = smooth_value({a, b, c}, values, {part.uv[t[0]], part.uv[t[1]], part.uv[t[2]]},
+                                      {part.slope[t[0]], part.slope[t[1]], part.slope[t[2]]});
         hit.u = a * part.uv[t[0]][0] + b * part.uv[t[1]][0] + c * part.uv[t[2]][0];
         hit.v = a * part.uv[t[0]][1] + b * part.uv[t[1]][1] + c * part.uv[t[2]][1];
       }

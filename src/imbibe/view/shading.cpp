@@ -168,7 +168,8 @@ Surface surface_of(const Trace& trace, const Ray& ray, const SolidHit& hit) {
       s.colour = Vec3f{linear_from_srgb(shown.x), linear_from_srgb(shown.y), linear_from_srgb(shown.z)} * 0.97f;
     } else {
       s.colour = wet_colour(hit.colour, hit.saturation);
-      s.gloss = 0.6f * smoothstep(0.5f, 1.2f, hit.saturation);
+      // Menisci lie between the fibres until the cloth is full: only what it holds beyond that shines as a film.
+      s.gloss = 0.6f * smoothstep(0.95f, 1.4f, hit.saturation);
     }
     return s;
   }
@@ -291,8 +292,10 @@ Look look_for(const LookInput& in) {
     look.water_absorption = Vec3f{1.05f, 0.50f, 0.16f} / depth;
     look.water_scattered = Vec3f{0.22f, 0.47f, 0.86f};
   } else {
-    // A studio: a large soft light behind the left of the subject, a cool sky, a warm table.
-    look.to_light = normalized(in.right * -0.62f + ahead * 0.55f + Vec3f{0, 0, 1.0f});
+    // A studio: a large soft light behind the left of the subject, a cool sky, a warm table. Who looks along the table sees the
+    // faces of upright cloth: then it stands in front of them.
+    const float behind = smoothstep(0.24f, 0.34f, -in.forward.z);
+    look.to_light = normalized(in.right * -0.62f + ahead * (0.95f * behind - 0.4f) + Vec3f{0, 0, 1.0f});
     look.to_window = normalized(in.right * -0.75f + ahead * -0.35f + Vec3f{0, 0, 1.0f});
     look.light_size = 0.22f;
     look.light = Vec3f{1.0f, 0.92f, 0.80f} * 1.18f;
