@@ -202,6 +202,20 @@ TEST_F(RunCommand, DrawsThePicturesOfTheRunAgainBitForBit) {
     EXPECT_EQ(text_of(folder_ / "out" / "pictures" / name), text_of(folder_ / "again" / "pictures" / name)) << name;
 }
 
+// A cloth of cells, and the pipe above it, which is a mesh.
+TEST_F(RunCommand, DrawsAClothOfCellsAndItsPipeAgainBitForBit) {
+  scene_ = IMBIBE_SOURCE_DIR "/scenes/seed_b/pipe_on_hanging_cloth.yaml";
+  run("out", "--until 0.2 --set picture.width=96 --set picture.height=64 --set picture.samples=1");
+  const Outcome render = run_command("render " + in("out") + " -o " + in("again"));
+  EXPECT_EQ(render.code, 0) << render.output;
+  for (const char* name : {"picture_000000.png", "picture_000002.png"})
+    EXPECT_EQ(text_of(folder_ / "out" / "pictures" / name), text_of(folder_ / "again" / "pictures" / name)) << name;
+  const PolyData cloth = read_vtp(folder_ / "out" / "textile_cloth_000002.vtp");
+  EXPECT_EQ(cloth.points.size(), 23u * 23u);
+  for (const char* name : {"saturation", "cell_kg", "velocity", "uv"})
+    EXPECT_TRUE(std::any_of(cloth.arrays.begin(), cloth.arrays.end(), [&](const PointArray& a) { return a.name == name; })) << name;
+}
+
 TEST_F(RunCommand, KeepsTextilesApartWhoseNamesDifferOnlyInWhatAFileNameCannotCarry) {
   std::string text = scene_text();
   text.insert(text.find("output:"),

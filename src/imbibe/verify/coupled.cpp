@@ -47,16 +47,36 @@ Uptake drop(CaseRunner& runner, const std::vector<std::string>& overrides) {
 
 CaseResult particle_size(CaseRunner& runner) {
   CaseResult r;
-  std::vector<Uptake> runs;
+  struct Mean {
+    Real end = 0, half = 0, nine_tenths = 0, least = std::numeric_limits<Real>::infinity(), most = 0;  // the last two: nine tenths
+  };
+  std::vector<Mean> runs;
   const std::vector<Real> sizes = runner.form(std::vector<Real>{5, 6}, std::vector<Real>{6, 8, 10});
+  // Splashes are chaotic: a drop set down a twentieth of a millimetre aside wets some per cent more or fewer pores. So the mean
+  // over places a quarter of the warp's pitch apart is compared.
+  const std::vector<Real> places = runner.form(std::vector<Real>{0}, std::vector<Real>{0, 1.0 / 12, 1.0 / 6, 1.0 / 4});  // mm
   Chart chart = chart_of("Water taken up", "time", "s", "volume", "uL", {}, {});
   for (const Real across : sizes) {
-    runs.push_back(drop(runner, {particle_mass(across), set("duration", runner.form(4.0, 10.0), "s"), "output.every=0.05 s"}));
-    chart.x = runs.back().time;
-    chart.curves.push_back({fmt::format("{:g} particles per radius", across), runs.back().taken, ""});
-    r.checks.push_back(at_most(fmt::format("{:g} particles per radius: balance of the water", across), mass_balance(runs.back().last).error(), 1e-10, "", "invariant"));
+    Mean mean;
+    Real balance = 0;
+    for (const Real place : places) {
+      const Uptake u = drop(runner, {particle_mass(across), set("duration", runner.form(4.0, 10.0), "s"), "output.every=0.05 s",
+                                     fmt::format("liquid.drops[0].centre=[{:.4f} mm, 0 mm, 1.65 mm]", place)});
+      const Real share = 1 / static_cast<Real>(places.size());
+      mean.end += share * u.end, mean.half += share * u.half, mean.nine_tenths += share * u.nine_tenths;
+      mean.least = std::min(mean.least, u.nine_tenths), mean.most = std::max(mean.most, u.nine_tenths);
+      balance = std::max(balance, mass_balance(u.last).error());
+      if (place > 0) continue;
+      chart.x = u.time;
+      chart.curves.push_back({fmt::format("{:g} particles per radius", across), u.taken, ""});
+    }
+    runs.push_back(mean);
+    r.checks.push_back(at_most(fmt::format("{:g} particles per radius: balance of the water", across), balance, 1e-10, "", "invariant"));
+    if (places.size() > 1) {
+      r.notes.push_back(fmt::format("{:g} particles per radius: nine tenths after {:.3f} to {:.3f} s over the {} places.", across, mean.least, mean.most, places.size()));
+    }
   }
-  const Uptake& finest = runs.back();
+  const Mean& finest = runs.back();
   for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
     const std::string name = fmt::format("{:g} against {:g} particles per radius: ", sizes[i], sizes.back());
     r.checks.push_back(near(name + "water taken up at the end", runs[i].end, finest.end, "uL", 0.05, "project's goal"));
@@ -64,7 +84,7 @@ CaseResult particle_size(CaseRunner& runner) {
     r.checks.push_back(near(name + "time to nine tenths", runs[i].nine_tenths, finest.nine_tenths, "s", 0.15, "project's goal"));
   }
   r.charts.push_back(chart);
-  r.parameters = {{"drop", "10 uL of water set down on cotton shirting"}};
+  r.parameters = {{"drop", "10 uL of water set down on cotton shirting, at 0, 1/4, 1/2 and 3/4 of the warp's pitch (quick form: 0)"}};
   return r;
 }
 
@@ -90,8 +110,8 @@ CaseResult stain(CaseRunner& runner) {
   r.checks.push_back(near("area of the stain", 1e6 * area, 1e6 * supplied / (capacity * mean), "mm2", 0.05, "project's goal: V/(yarn water per area x mean saturation)"));
   r.checks.push_back(at_most("share of the water that is left in pores", pores / (pores + yarn), 0.05, "1", "yarns drain them: 2 % were seen before with cotton"));
   r.checks.push_back(at_most("water that is still free", 1e9 * mass_balance(u.last).free / m.liquid.density, 0.05, "uL", "taken up"));
-  r.notes.push_back("What stays in the pores is in balance with the yarns: corner menisci of the share (P_e/P)^2, all of the pore at its entry suction P_e. "
-                    "The corners of a square tube hold 6 % of it there, (4 - pi)/(2 + sqrt(pi))^2 by Mayer, Stowe and Princen, so cloth should keep less than computed.");
+  r.notes.push_back(fmt::format("What stays in the pores is in balance with the yarns: rings at the crossings, {:.3f} of a pore at its entry suction P_e, less as (P_e/P)^2 above it.",
+                                m.pore(m.pores / 2).corner_share));
   runner.picture(r, u.last, runner.scene("drop_on_cloth"), "The stain at the end");
   r.parameters = {{"drop", "10 uL of water on cotton shirting"}, {"wet", "above 0.5 % saturation"}, {"mean saturation", fmt::format("{:.3f}", mean)}};
   return r;
@@ -180,7 +200,7 @@ void add_coupled(std::vector<Case>& cases) {
   const std::string family = "A drop on a cloth";
   const std::string models = "coupling/footprint.h coupling/absorption.h wetting/transport.h";
   cases.push_back({"uptake-resolution", family, "Uptake does not depend on the size of the particles", "water taken up over time at several sizes of particles", "the same at every size",
-                   "self-consistency", "drop set down without speed", models, particle_size});
+                   "self-consistency", "drop set down without speed", models + " coupling/film.h", particle_size});
   cases.push_back({"stain-area", family, "A stain ends at the area that its water fills in the yarns", "area of the stain and where the water is", "A = V/(yarn water per area x mean saturation)",
                    "yarns drain the pores: 16 kPa against 1.2 kPa of suction", "no sorption, no drying", models, stain});
   cases.push_back({"impact", family, "An impact gives the cloth what the drop loses", "momentum of liquid and cloth through impact, bounce and absorption", "p(liquid) + impulse on the cloth = constant",

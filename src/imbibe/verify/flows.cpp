@@ -130,17 +130,18 @@ Real couette(Real y, Real t, Real h, Real nu, Real speed) {
 
 CaseResult channel(CaseRunner& runner, bool belt) {
   CaseResult r;
-  const Real h = 0.5e-3, nu = 1e-4, g = 9.81, speed = 0.012, settled = h * h / nu;
+  const Real h = 0.5e-3, nu = 1e-4, g = 9.81, speed = 0.012, settled = h * h / nu, half_width = 0.7e-3;
   const Real greatest = belt ? speed : g * h * h / (2 * nu);
   std::vector<Convergence::Row> rows;
   std::vector<std::pair<Real, Real>> deviations;  // time in h2/nu, rms
   std::vector<Real> place, computed, theory;
   // Whole cells of the lattice between the plates: stretched by 5 % to fit it is 2 % less viscous.
-  for (const int cells : runner.form(std::vector<int>{6, 9}, std::vector<int>{6, 9, 13})) {
+  for (const int cells : runner.form(std::vector<int>{5, 7}, std::vector<int>{6, 9, 13})) {
     const Real spacing = 2 * h / (cells * std::cbrt(2.0));
     const int across = static_cast<int>(std::lround(2 * h / spacing));
-    std::vector<std::string> o{mass_for(spacing, 1000), set("output.every", 0.3 * settled, "s"), set("duration", 1.5 * settled, "s"),
+    std::vector<std::string> o{mass_for(spacing, 1000), set("output.every", 0.6 * settled, "s"), set("duration", 3 * settled, "s"),
                                set("limits.max_step", settled / 100, "s")};
+    if (runner.quick()) o.push_back("liquid.solver.pressure.tolerance=1e-5");
     if (belt) o.push_back("gravity=[0, 0, 0]"), o.push_back(fmt::format("solids[1].surface_velocity=[{}, 0, 0]", speed));
     deviations.clear();
     Real steady = 0;
@@ -150,7 +151,7 @@ CaseResult channel(CaseRunner& runner, bool belt) {
       std::vector<Line> bins(static_cast<std::size_t>(across));
       for (std::size_t i = 0; i < now.liquid.particles.size(); ++i) {
         const Float4 &x = now.liquid.particles.position[i], &u = now.liquid.particles.velocity[i];
-        if (std::abs(x.x) > 2 * h || std::abs(x.z) > 2 * h - 3 * spacing) continue;
+        if (std::abs(x.x) > 2 * h || std::abs(x.z) > half_width - 3 * spacing) continue;
         const Real wanted = belt ? couette(x.y, now.time, h, nu, speed) : poiseuille(x.y, now.time, h, nu, g);
         square += (u.x - wanted) * (u.x - wanted), count += 1;
         bins[static_cast<std::size_t>(std::clamp((x.y + h) / (2 * h) * across, 0.0, across - 1.0))].add(x.y, u.x);
@@ -173,10 +174,10 @@ CaseResult channel(CaseRunner& runner, bool belt) {
     r.checks.push_back(at_least("observed order", r.convergence[0].order, 1, "", "project's goal"));
   }
   if (!belt)
-    r.notes.push_back("The block is born on a body-centred lattice, which this slow flow does not mix; along its axes it has 1.01 to 1.02 of the viscosity (a simple cubic one "
-                      "0.85). The profile is that of the series and a slip of about 0.1 spacings at the plates. The block's open ends resist less: 3, 4 and 8 mm long at 6 "
-                      "cells across, the profile's part without slip is 1.007, 0.998 and 0.988 of the series', so 1 % here does not fall with the spacing.");
-  r.charts.push_back(chart_of("Profile at t = 1.5 h2/nu", "y", "mm", "velocity", "mm/s", place, {{"solver", computed, ""}, {"series", theory, ""}}));
+    r.notes.push_back("Two errors do not fall with the spacing. Gravity is added after viscosity has acted, so a steady flow is too fast by dt g everywhere: 2 % of the greatest speed "
+                      "with the 100 steps of h2/nu that all spacings make. And the block is born on a body-centred lattice, which this slow flow does not mix; along its axes the viscous sum is "
+                      "1.019 of the viscosity (in the mean over directions 0.984): 1.9 % too slow. In the middle they cancel; at the plates 1.3 % (7.6 spacings across) and 0.5 % (16) of slip come on top.");
+  r.charts.push_back(chart_of("Profile at t = 3 h2/nu", "y", "mm", "velocity", "mm/s", place, {{"solver", computed, ""}, {"series", theory, ""}}));
   r.parameters = {{"plates", "1 mm apart"}, {"liquid", "nu = 1e-4 m2/s"}, {belt ? "upper plate" : "force", belt ? "12 mm/s" : "9.81 m/s2"}};
   return r;
 }

@@ -86,7 +86,7 @@ std::vector<Real> dense_step(const WettingModel& m, const std::vector<Real>& sta
   const std::size_t n = m.segments;
   std::vector<Real> s = start;
   const auto psi = [&](std::size_t i, Real x) {
-    const Sloped p = pressure_at({m.entry(i), m.size_index(i), m.open(i), m.overfill(i)}, x);
+    const Sloped p = pressure_at(retention_of(m.at(i)), x);
     const Sloped k = kirchhoff_potential(m.entry(i), m.size_index(i), p.value);
     return Sloped{k.value, k.slope * p.slope};
   };

@@ -247,7 +247,7 @@ CaseResult hanging_column(CaseRunner& runner) {
   for (std::size_t i = 0; i < y.place.size(); ++i) {
     const Real rise = y.place[i] - fed;
     // The first node is held at p = 0 by the reservoir; above it p falls by rho g z along the straight sheet.
-    const Real s = saturation_at({m.entry(0), m.size_index(0), m.open(0), m.overfill(0)}, -density * 9.81 * rise);
+    const Real s = saturation_at(retention_of(m.at(0)), -density * 9.81 * rise);
     worst = std::max(worst, std::abs(y.saturation[i] - s));
     place.push_back(1e3 * rise), computed.push_back(y.saturation[i]), theory.push_back(s);
   }
