@@ -216,6 +216,29 @@ TEST_F(RunCommand, DrawsAClothOfCellsAndItsPipeAgainBitForBit) {
     EXPECT_TRUE(std::any_of(cloth.arrays.begin(), cloth.arrays.end(), [&](const PointArray& a) { return a.name == name; })) << name;
 }
 
+// The folder is whole: the mesh is gone, the folder is elsewhere, and it is drawn, goes on and starts again all the same.
+TEST_F(RunCommand, KeepsTheMeshesOfItsScene) {
+  const fs::path from = folder_ / "from";
+  fs::create_directories(from);
+  for (const char* name : {"round_cloth.yaml", "round_cloth.obj", "pipe_on_hanging_cloth.yaml"})
+    fs::copy_file(fs::path(IMBIBE_SOURCE_DIR) / "scenes/seed_b" / name, from / name);
+  scene_ = (from / "round_cloth.yaml").string();
+  run("out", "--until 0.02 --set output.every=0.01 --set picture.width=96 --set picture.height=64 --set picture.samples=1");
+  EXPECT_EQ(text_of(folder_ / "out/scene.yaml").find(folder_.string()), std::string::npos);
+  fs::remove_all(from);
+  fs::rename(folder_ / "out", folder_ / "moved");
+  const Outcome render = run_command("render " + in("moved") + " -o " + in("again"));
+  EXPECT_EQ(render.code, 0) << render.output;
+  EXPECT_EQ(text_of(folder_ / "moved/pictures/picture_000001.png"), text_of(folder_ / "again/pictures/picture_000001.png"));
+  const Outcome resumed = run_command("run " + in("moved") + " --resume --until 0.03 --no-pictures");
+  EXPECT_EQ(resumed.code, 0) << resumed.output;
+  const std::string mesh = text_of(folder_ / "moved/files/round_cloth.obj");
+  EXPECT_FALSE(mesh.empty());
+  const Outcome anew = run_command("run " + in("moved/scene.yaml") + " --until 0.01 --no-pictures --overwrite -o " + in("moved"));
+  EXPECT_EQ(anew.code, 0) << anew.output;
+  EXPECT_EQ(text_of(folder_ / "moved/files/round_cloth.obj"), mesh);
+}
+
 TEST_F(RunCommand, KeepsTextilesApartWhoseNamesDifferOnlyInWhatAFileNameCannotCarry) {
   std::string text = scene_text();
   text.insert(text.find("output:"),

@@ -54,8 +54,23 @@ bool is_name_of_a_run(std::string name) {
          is_numbered(name, "liquid_", ".vtp") || is_numbered(name, "checkpoint_", ".h5");
 }
 
+// Copies of the scene's files that an earlier run made, as its run.json says.
+std::vector<fs::path> copies_of_earlier_run(const fs::path& folder) {
+  std::vector<fs::path> copies;
+  if (!fs::exists(folder / "run.json")) return copies;
+  const Json run = Json::parse(read_whole_file(folder / "run.json"), nullptr, false);
+  if (!run.is_object() || !run.contains("files") || !run["files"].is_array()) return copies;
+  for (const Json& name : run["files"]) {
+    if (!name.is_string()) continue;
+    const fs::path path(name.get<std::string>());
+    const bool inside = path.parent_path() == run_files_folder && path.has_filename() && path.filename() != "..";
+    if (inside && fs::exists(folder / path)) copies.push_back(folder / path);
+  }
+  return copies;
+}
+
 void remove_earlier_run(const fs::path& folder) {
-  std::vector<fs::path> old;
+  std::vector<fs::path> old = copies_of_earlier_run(folder);
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!entry.is_directory() && is_name_of_a_run(entry.path().filename().string())) old.push_back(entry.path());
   }
@@ -118,6 +133,12 @@ RunFolder::RunFolder(fs::path folder, RunSetup setup, ExistingFolder existing, c
     : folder_(std::move(folder)), setup_(std::move(setup)), started_at_(now_utc()) {
   for (std::string& stem : collection_stems(world)) collections_.push_back({std::move(stem), {}});
   prepare(existing, world);
+  if (!setup_.files.empty()) {
+    std::error_code error;
+    fs::create_directories(folder_ / run_files_folder, error);
+    if (error) throw OutputError(folder_ / run_files_folder, "cannot create the folder", error.value());
+  }
+  for (const auto& [name, contents] : setup_.files) write_whole_file(folder_ / name, contents);
   count_all();
   write_whole_file(folder_ / "scene.yaml", resolved_scene_mark + setup_.scene_yaml);
   write_run_json(world, RunStatus::running, "");
@@ -323,6 +344,8 @@ void RunFolder::write_run_json(const World& world, RunStatus status, const std::
                    {"particle_mass_kg", number(world.liquid.particle_mass)}};
   out["fabrics"] = Json::array();
   for (const auto& [name, text] : setup_.fabrics) out["fabrics"].push_back({{"name", name}, {"numbers", text}});
+  out["files"] = Json::array();
+  for (const auto& [name, contents] : setup_.files) out["files"].push_back(name);
   out["notes"] = notes_;
   // Texts come from the user's files: what is not UTF-8 is replaced rather than refused.
   write_whole_file(folder_ / "run.json", out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -1,5 +1,6 @@
 // The folder of a run: everything it leaves behind, readable at any moment (docs/run_folder.md).
 //   scene.yaml run.json log.txt series.csv checkpoint_*.h5 pictures/ film.mp4 report.html
+//   files/: meshes and drafts that the scene names, so that the folder may be moved and outlives them
 //   liquid.pvd liquid_000000.vtp ...  textile_<name>.pvd ...  textile_<name>_pores.pvd ...
 // Nothing is half written under its own name; the row of series.csv comes last, so a time that has a row has its files.
 // What the disk refuses is an OutputError, and what was written before stays.
@@ -8,6 +9,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,10 +29,13 @@ enum class ExistingFolder {
   overwrite,  // remove what an earlier run left there, and only that; not a run's folder: an InputError
 };
 
+inline const std::string run_files_folder = "files";
+
 struct RunSetup {
   std::string command;     // to repeat it, as it would be typed
   std::string title;
   std::string scene_yaml;  // resolved text, runnable again
+  std::map<std::string, std::string> files;  // that it names: path in the folder, contents
   std::uint64_t seed = 1;
   int threads = 0;
   Real until_s = 0;
@@ -45,7 +50,7 @@ enum class RunStatus { running, done, interrupted, failed };
 
 class RunFolder {
  public:
-  // Creates the folder (and parents) and writes scene.yaml and run.json. `world` is the state the run starts or
+  // Creates the folder (and parents) and writes scene.yaml with its files, and run.json. `world` is the state the run starts or
   // resumes from.
   RunFolder(std::filesystem::path folder, RunSetup setup, ExistingFolder existing, const World& world);
 

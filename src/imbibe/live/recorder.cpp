@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "imbibe/core/parallel.h"
+#include "imbibe/scene/scene_files.h"
 
 namespace imbibe::live {
 
@@ -20,7 +21,9 @@ RunSetup run_setup(const Scene& scene, const World& world, const std::string& co
   RunSetup setup;
   setup.command = command;
   setup.title = scene.title;
-  setup.scene_yaml = write_scene(scene);
+  Scene kept = scene;
+  setup.files = take_files_along(kept, run_files_folder);
+  setup.scene_yaml = write_scene(kept);
   setup.seed = world.seed;
   setup.threads = available_threads();
   setup.until_s = scene.duration;

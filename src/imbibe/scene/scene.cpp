@@ -9,6 +9,7 @@
 #include "imbibe/scene/cloth_builder.h"
 #include "imbibe/scene/describe_reader.h"
 #include "imbibe/scene/describe_writer.h"
+#include "imbibe/scene/scene_files.h"
 
 namespace imbibe {
 namespace {
@@ -25,22 +26,7 @@ std::string resolved(const std::string& name, const std::filesystem::path& folde
   return std::filesystem::absolute(folder / path).lexically_normal().string();
 }
 
-// The keys that name files, all of them: visit(name, key).
-template <class AnyScene, class Visit>
-void visit_file_names(AnyScene& scene, Visit&& visit) {
-  for (std::size_t i = 0; i < scene.textiles.size(); ++i) {
-    auto& textile = scene.textiles[i];
-    if (is_wif_name(textile.fabric.weave)) visit(textile.fabric.weave, fmt::format("textiles[{}].weave", i));
-    if (textile.sheet.soft && textile.sheet.soft->mesh)
-      visit(*textile.sheet.soft->mesh, fmt::format("textiles[{}].sheet.soft.mesh", i));
-  }
-  for (std::size_t i = 0; i < scene.liquid.pipes.size(); ++i)
-    if (scene.liquid.pipes[i].file) visit(*scene.liquid.pipes[i].file, fmt::format("liquid.pipes[{}].file", i));
-  for (std::size_t i = 0; i < scene.solids.size(); ++i)
-    if (scene.solids[i].shape.file) visit(*scene.solids[i].shape.file, fmt::format("solids[{}].shape.file", i));
-}
-
-// File names become absolute, so that the resolved scene of a run folder runs from anywhere.
+// File names become absolute: scenes are read and run from anywhere.
 void resolve_file_names(Scene& scene) {
   for (std::size_t i = 0; i < scene.textiles.size(); ++i)
     scene.textiles[i].fabric.folder = folder_of(scene, fmt::format("textiles[{}].weave", i));
