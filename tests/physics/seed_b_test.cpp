@@ -73,15 +73,17 @@ TEST(SeedB, WithoutAbsorptionParticlesComeToRestOnTheCloth) {
 }
 
 TEST(SeedB, WithoutLeakingTheClothHoldsMoreAndSagsMore) {
-  // A jet too rich for the cells under it, which may not bounce it: with leaking the excess leaves.
-  const std::vector<std::string> rich{"textiles[0].wetting.cells.bounce=false", "liquid.pipes[0].particle_rate=600"};
+  // A jet too rich for the cells under it, which may not bounce it: with leaking the excess leaves. Looked at when the cloth hangs
+  // still: while the jet lasts what leaks hangs at the lowest point and draws it down, too.
+  const std::vector<std::string> rich{"textiles[0].wetting.cells.bounce=false", "liquid.pipes[0].particle_rate=1500",
+                                      "liquid.pipes[0].stop=1.3"};
   std::vector<std::string> tight = rich;
   tight.push_back("textiles[0].wetting.cells.leak=false");
-  const Seen leaking = go(small_scene(rich), 1.8), holding = go(small_scene(tight), 1.8);
+  const Seen leaking = go(small_scene(rich), 2.8), holding = go(small_scene(tight), 2.8);
   EXPECT_GT(leaking.world.cell_cloths[0].released_particles, 0u);
   EXPECT_EQ(holding.world.cell_cloths[0].released_particles, 0u);
   EXPECT_GT(holding.content.back(), leaking.content.back());
-  EXPECT_GT(mean_sag(holding, 1.4, 1.8), mean_sag(leaking, 1.4, 1.8));
+  EXPECT_GT(mean_sag(holding, 2.3, 2.8), mean_sag(leaking, 2.3, 2.8));
   // It takes longer until the cells are alike: the fullest is fuller.
   EXPECT_GT(measure(holding.world.cell_cloths[0]).max_saturation, measure(leaking.world.cell_cloths[0]).max_saturation);
 }
@@ -127,7 +129,7 @@ TEST(SeedB, MomentumOfLiquidClothAndPinsIsKeptEachStep) {
   for (const char* tension : {"liquid.solver.surface_tension=false", "liquid.solver.surface_tension=true"}) {
     // Over-full cells, so that drops leak too. Vapour would take its own momentum along.
     World world = small_scene({"textiles[0].sheet.soft.cloth.air.density=0", "air.mass_transfer=0",
-                               "textiles[0].wetting.cells.bounce=false", "liquid.pipes[0].particle_rate=600", tension,
+                               "textiles[0].wetting.cells.bounce=false", "liquid.pipes[0].particle_rate=1200", tension,
                                "domain={lower: [-4 m, -4 m, -9 m], upper: [4 m, 4 m, 4 m]}"});  // none leaves
     StepScratch scratch;
     Real worst = 0, scale = 0;

@@ -30,8 +30,10 @@ Bounds material_bounds(const Sheet& sheet) {
   return b;
 }
 
-// Area of the sheet in each cell of a free-form sheet: every triangle is cut into small ones, each counted at its middle.
-void add_areas(const Sheet& sheet, CellGrid& grid) {
+// Area of the sheet in each cell of a free-form sheet: every triangle is cut into small ones, each counted at its middle, first
+// for the cell it lies in, which tells the cells that there are, then with the weights of contents (cell_flow.h).
+template <class Visit>
+void each_small_triangle(const Sheet& sheet, Visit&& visit) {
   constexpr int cuts = 8;
   for (const auto& t : sheet.triangles) {
     const Vec3 a{sheet.u[t[0]], sheet.v[t[0]], 0}, b{sheet.u[t[1]], sheet.v[t[1]], 0}, c{sheet.u[t[2]], sheet.v[t[2]], 0};
@@ -41,9 +43,37 @@ void add_areas(const Sheet& sheet, CellGrid& grid) {
         const Real third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
         const Real x = (i + third) / cuts, y = (j / 2 + third) / cuts;
         const Vec3 p = a + x * (b - a) + y * (c - a);
-        grid.area[grid.cell_at(p.x, p.y)] += part;
+        visit(p, part);
       }
   }
+}
+
+void find_areas(const Sheet& sheet, CellGrid& grid) {
+  grid.area.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), 0);
+  each_small_triangle(sheet, [&](const Vec3& p, Real part) { grid.area[grid.cell_at(p.x, p.y)] += part; });
+  std::vector<Real> weighted(grid.area.size(), 0);
+  each_small_triangle(sheet, [&](const Vec3& p, Real part) {
+    const CellStencil s = stencil_at(grid, p);
+    for (std::size_t k = 0; k < s.count; ++k) weighted[s.cell[k]] += s.weight[k] * part;
+  });
+  grid.area = std::move(weighted);
+}
+
+// What the weights of a rectangle's outermost cells cover of an edge: 1/2 + 1/24 of a cell, and so much less beside it.
+Real edge_share(int i, int cells) {
+  constexpr Real more = 1.0 / 24;
+  const bool first = i == 0, last = i == cells - 1;
+  return 1 - (first || last ? 0.5 - more : 0) - (i == 1 ? more : 0) - (i == cells - 2 ? more : 0);
+}
+
+CellGrid grid_cells(const Sheet& sheet, Real capacity_per_area) {
+  const Bounds b = material_bounds(sheet);
+  CellGrid grid = rectangular_cells(static_cast<int>(sheet.columns), static_cast<int>(sheet.rows), b.size().x, b.size().y, capacity_per_area);
+  for (int j = 0; j < grid.rows; ++j)
+    for (int i = 0; i < grid.columns; ++i)
+      grid.area[static_cast<std::size_t>(j * grid.columns + i)] =
+          grid.pitch_x * edge_share(i, grid.columns) * grid.pitch_y * edge_share(j, grid.rows);
+  return grid;
 }
 
 CellGrid free_form_cells(const Sheet& sheet, std::optional<Real> size, Real capacity_per_area) {
@@ -58,8 +88,7 @@ CellGrid free_form_cells(const Sheet& sheet, std::optional<Real> size, Real capa
   grid.first_x = b.lower.x + 0.5 * grid.pitch_x, grid.first_y = b.lower.y + 0.5 * grid.pitch_y;
   grid.lower_x = b.lower.x, grid.lower_y = b.lower.y, grid.upper_x = b.upper.x, grid.upper_y = b.upper.y;
   grid.capacity_per_area = capacity_per_area;
-  grid.area.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), 0);
-  add_areas(sheet, grid);
+  find_areas(sheet, grid);
   return grid;
 }
 
@@ -86,9 +115,10 @@ void find_footprint(const CellCloth& cloth, const Vec3& m, Real kg, Real dx, std
   }
 }
 
-// Whether the cells under a footprint have room for so much of the particle, or of what they hold if that is less; what one cell
-// has too much counts against the room in the next. Where nothing flows cells of any size are then filled to 1.06 to 1.12, where
-// it flows to about 1 (with room for three quarters 1.04 to 1.07 and a tenth less uptake by fine cells than by coarse ones).
+// Whether the cells under a footprint have room for so much of what they are given of the particle (their neighbours count the
+// rest), or of what they hold if that is less; what one cell has too much counts against the room in the next. Where nothing
+// flows cells of any size are then filled to 1.06 to 1.12, where it flows to about 1 (with room for three quarters 1.04 to 1.07 and
+// a tenth less uptake by fine cells than by coarse ones).
 constexpr Real room_for = 0.5;
 
 bool takes(const CellCloth& cloth, const std::vector<Vec3>& footprint, Real kg) {
@@ -99,24 +129,27 @@ bool takes(const CellCloth& cloth, const std::vector<Vec3>& footprint, Real kg) 
   for (const Vec3& at : footprint) cells[count++] = cloth.grid->cell_at(at.x, at.y);
   std::sort(cells.begin(), cells.begin() + count);
   count = static_cast<std::size_t>(std::unique(cells.begin(), cells.begin() + count) - cells.begin());
-  Real room = 0, capacity = 0;
+  Real room = 0, capacity = 0, given = 0;
   for (std::size_t k = 0; k < count; ++k) {
     capacity += cloth.grid->capacity(cells[k]);
     room += cloth.grid->capacity(cells[k]) - cloth.contents.content_kg[cells[k]];
   }
-  return room_for * std::min(kg, capacity) <= room;
+  const CellStencil middle = stencil_at(*cloth.grid, footprint[0]);
+  for (std::size_t k = 0; k < middle.count; ++k)
+    if (std::binary_search(cells.begin(), cells.begin() + count, middle.cell[k])) given += kg * middle.weight[k];
+  return room_for * std::min(given, capacity) <= room;
 }
 
 void absorb(CellCloth& cloth, std::span<const std::uint8_t> held, const std::vector<Vec3>& footprint, Real kg,
             const Vec3& velocity) {
   const Real part = kg / static_cast<Real>(footprint.size());
   for (const Vec3& m : footprint) {
-    const std::size_t before = cloth.contents.parcels();
-    add_parcel(*cloth.grid, cloth.contents, m.x, m.y, part);
-    const Vec3& at = cloth.contents.parcel_place[before];
-    const Index node = (*cloth.node_of_cell)[cloth.grid->cell_at(at.x, at.y)];
-    merge_into_node(cloth.soft, held, node, part, velocity);
-    cloth.soft.sheet.added_mass[node] += part;
+    const CellStencil where = add_counted_parcel(*cloth.grid, cloth.contents, m.x, m.y, part);
+    for (std::size_t k = 0; k < where.count; ++k) {
+      const Index node = (*cloth.node_of_cell)[where.cell[k]];
+      merge_into_node(cloth.soft, held, node, part * where.weight[k], velocity);
+      cloth.soft.sheet.added_mass[node] += part * where.weight[k];
+    }
   }
   cloth.soft.liquid_impulse += kg * velocity;
   ++cloth.absorbed_particles;
@@ -132,6 +165,68 @@ void carry(CellCloth& cloth, std::span<const std::uint8_t> held, Index from, Ind
   merge_into_node(cloth.soft, held, b, kg, velocity);
   sheet.added_mass[b] += kg;
 }
+
+// The same for all that the parcels carry in a step, from the velocities before it: what leaves a cell has its node's, and
+// what a parcel brings elsewhere the mean of what it took.
+class Carried {
+ public:
+  Carried(CellCloth& cloth, CellFlowScratch& work) : cloth_(cloth), kg_(work.moved_kg), momentum_(work.moved_momentum) {
+    kg_.assign(cloth.soft.sheet.size(), 0);
+    momentum_.assign(cloth.soft.sheet.size(), Vec3{});
+  }
+
+  void move(Real kg, const CellStencil& from, const CellStencil& to) {
+    std::array<Index, 18> cell;
+    std::array<Real, 18> change;
+    std::size_t count = from.count;
+    for (std::size_t k = 0; k < from.count; ++k) cell[k] = from.cell[k], change[k] = -kg * from.weight[k];
+    for (std::size_t k = 0; k < to.count; ++k) {
+      // Mostly the same cells in the same order.
+      const std::size_t at = k < from.count && cell[k] == to.cell[k]
+                                 ? k
+                                 : static_cast<std::size_t>(std::find(cell.begin(), cell.begin() + count, to.cell[k]) - cell.begin());
+      if (at == count) cell[count] = to.cell[k], change[count++] = 0;
+      change[at] += kg * to.weight[k];
+    }
+    Real taken = 0;
+    Vec3 momentum{};
+    for (std::size_t k = 0; k < count; ++k)
+      if (change[k] < 0) taken -= change[k], momentum -= change[k] * velocity(cell[k]);
+    if (!(taken > 0)) return;
+    for (std::size_t k = 0; k < count; ++k) add(cell[k], change[k], change[k] < 0 ? velocity(cell[k]) : momentum / taken);
+  }
+
+  // What leaks of a parcel.
+  void move(Real kg, const CellStencil& from, Index to) {
+    for (std::size_t k = 0; k < from.count; ++k) {
+      const Real part = kg * from.weight[k];
+      add(to, part, velocity(from.cell[k])), add(from.cell[k], -part, velocity(from.cell[k]));
+    }
+  }
+
+  void apply(std::span<const std::uint8_t> held) {
+    Sheet& sheet = cloth_.soft.sheet;
+    for (std::size_t n = 0; n < kg_.size(); ++n) {
+      if (kg_[n] == 0 && momentum_[n] == Vec3{}) continue;
+      Vec3& v = sheet.velocity[n];
+      const Real mass = sheet.mass(n), added = std::max(0.0, sheet.added_mass[n] + kg_[n]);
+      if (held[n]) cloth_.soft.support_impulse -= momentum_[n] - kg_[n] * v;
+      else v = (mass * v + momentum_[n]) / (mass - sheet.added_mass[n] + added);
+      sheet.added_mass[n] = added;
+    }
+  }
+
+ private:
+  Vec3 velocity(Index cell) const { return cloth_.soft.sheet.velocity[(*cloth_.node_of_cell)[cell]]; }
+  void add(Index cell, Real kg, const Vec3& velocity) {
+    const Index node = (*cloth_.node_of_cell)[cell];
+    kg_[node] += kg, momentum_[node] += kg * velocity;
+  }
+
+  CellCloth& cloth_;
+  std::vector<Real>& kg_;
+  std::vector<Vec3>& momentum_;
+};
 
 // In particle spacings: what is nearer to the sheet than hanging ones is moved off it.
 constexpr Real clear_of_sheet = 0.4;
@@ -197,23 +292,18 @@ bool gather_waiting(CellCloth& cloth, std::span<const std::uint8_t> held, std::s
   return cloth.waiting_kg[cell] >= kg;
 }
 
-bool any_cell_is_over_full(const CellCloth& cloth) {
-  for (std::size_t c = 0; c < cloth.grid->cells(); ++c)
-    if (cloth.contents.content_kg[c] > cloth.grid->capacity(c)) return true;
-  return false;
-}
-
 // Drops that hang where cells have room again, and nothing leaks, are drawn back into the cloth.
-void draw_back(CellCloth& cloth) {
+void draw_back(CellCloth& cloth, std::span<const std::uint8_t> held) {
   constexpr Real least_share = 0.05;  // of the capacity: not a parcel in every step
   const CellGrid& grid = *cloth.grid;
   CellContents& contents = cloth.contents;
-  if (!cloth.params.absorb || waiting_kg(cloth) == 0 || any_cell_is_over_full(cloth)) return;
+  if (!cloth.params.absorb || waiting_kg(cloth) == 0 || leaks(cloth)) return;
   for (Index c = 0; c < grid.cells(); ++c) {
     const Real room = grid.capacity(c) - contents.content_kg[c], kg = std::min(room, cloth.waiting_kg[c]);
     if (!(kg > 0) || (kg < cloth.waiting_kg[c] && kg < least_share * grid.capacity(c))) continue;
     const Vec3 at = grid.centre(c);
-    add_parcel(grid, contents, at.x, at.y, kg);
+    const CellStencil where = add_counted_parcel(grid, contents, at.x, at.y, kg);
+    for (std::size_t k = 0; k < where.count; ++k) carry(cloth, held, c, where.cell[k], kg * where.weight[k]);
     cloth.waiting_kg[c] -= kg;
   }
 }
@@ -260,9 +350,7 @@ void fit_cells(CellCloth& cloth) {
   const Real capacity = cloth.params.capacity.value_or(cloth.params.capacity_ratio * sheet.areal_mass);
   std::vector<Index> nodes;
   if (sheet.is_grid()) {
-    const Bounds b = material_bounds(sheet);
-    cloth.grid = std::make_shared<const CellGrid>(rectangular_cells(
-        static_cast<int>(sheet.columns), static_cast<int>(sheet.rows), b.size().x, b.size().y, capacity));
+    cloth.grid = std::make_shared<const CellGrid>(grid_cells(sheet, capacity));
     nodes.resize(sheet.size());
     std::iota(nodes.begin(), nodes.end(), Index{0});
   } else {
@@ -275,6 +363,15 @@ void fit_cells(CellCloth& cloth) {
   cloth.node_of_cell = std::make_shared<const std::vector<Index>>(std::move(nodes));
   cloth.contents = empty_contents(*cloth.grid);
   cloth.waiting_kg.assign(cloth.grid->cells(), 0);
+}
+
+bool leaks(const CellCloth& cloth) {
+  // Of the capacity: what cloth holds without leaking it. All that is wet drains through its lowest cell, ever more slowly.
+  constexpr Real over_full = 5e-3;
+  if (!cloth.params.leak) return false;
+  for (std::size_t c = 0; c < cloth.grid->cells(); ++c)
+    if (cloth.contents.content_kg[c] > (1 + over_full) * cloth.grid->capacity(c)) return true;
+  return false;
 }
 
 Real cell_kg(const CellCloth& cloth) { return total_kg(cloth.contents); }
@@ -300,26 +397,6 @@ std::vector<float> node_saturation(const CellCloth& cloth) {
     s[n] = static_cast<float>(cell_saturation(*cloth.grid, cloth.contents, cell));
   }
   return s;
-}
-
-std::vector<Vec3> gravity_along(const Sheet& sheet, const Vec3& gravity) {
-  std::vector<Vec3> sum(sheet.size(), Vec3{});
-  std::vector<Real> area(sheet.size(), 0);
-  for (const auto& t : sheet.triangles) {
-    const Real u1 = sheet.u[t[1]] - sheet.u[t[0]], v1 = sheet.v[t[1]] - sheet.v[t[0]];
-    const Real u2 = sheet.u[t[2]] - sheet.u[t[0]], v2 = sheet.v[t[2]] - sheet.v[t[0]];
-    const Real twice = u1 * v2 - u2 * v1;
-    const Vec3 x1 = sheet.position[t[1]] - sheet.position[t[0]], x2 = sheet.position[t[2]] - sheet.position[t[0]];
-    const Vec3 fu = (v2 * x1 - v1 * x2) / twice, fv = (u1 * x2 - u2 * x1) / twice;  // columns of F
-    const Real uu = dot(fu, fu), uv = dot(fu, fv), vv = dot(fv, fv), det = uu * vv - uv * uv;
-    if (!(det > 1e-12 * uu * vv)) continue;
-    const Real a = dot(fu, gravity), b = dot(fv, gravity);
-    const Vec3 g{(vv * a - uv * b) / det, (uu * b - uv * a) / det, 0};
-    for (const Index n : t) sum[n] += twice * g, area[n] += twice;
-  }
-  for (std::size_t n = 0; n < sum.size(); ++n)
-    if (area[n] != 0) sum[n] = sum[n] / area[n];
-  return sum;
 }
 
 void meet_particles(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, std::span<const Float4> before,
@@ -369,14 +446,14 @@ void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid
   const Real reach = touch_spacings * liquid.spacing() + 0.5 * cloth.soft.cloth.hand.thickness;
   Bounds near_sheet = scratch.surface.at_end.nodes[0].bounds;
   near_sheet.grow(reach);
-  const bool leaks = any_cell_is_over_full(cloth);
+  const bool leaking = leaks(cloth);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec3 x = xyz(p.position[i]);
     if (dead[i] || !near_sheet.contains(x)) continue;
     const NearestOnSheet near = nearest_on(scratch.surface, x, reach);
     if (near.at.triangle == no_index || near.on_border) continue;
     // What hangs under a sheet that leaks, or flies off, is leaving it. What still hangs there when nothing leaks is drawn back.
-    if ((leaks && dot(near.normal, gravity) > 0) ||
+    if ((leaking && dot(near.normal, gravity) > 0) ||
         dot(near.normal, xyz(p.velocity[i]) - velocity_at(cloth.soft.sheet, near.at)) > 0.5 * std::sqrt(norm(gravity) * liquid.spacing()))
       continue;
     const Vec3 m = material(cloth.soft.sheet, near.at);
@@ -388,30 +465,42 @@ void absorb_touching(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid
   }
 }
 
+namespace {
+
+// Parcels move and leak; what they carry from node to node takes its momentum along.
+void flow(CellCloth& cloth, SoftSheetScratch& scratch, const Vec3& gravity, Real dt) {
+  const CellGrid& grid = *cloth.grid;
+  CellContents& contents = cloth.contents;
+  CellFlowScratch& work = scratch.cells;
+  work.lift.resize(grid.cells());
+  for (std::size_t c = 0; c < grid.cells(); ++c) work.lift[c] = -dot(gravity, cloth.soft.sheet.position[(*cloth.node_of_cell)[c]]);
+  work.place_before = contents.parcel_place;
+  work.content_before = contents.content_kg;
+  move_parcels(grid, cloth.params, work.lift, dt, contents, work);
+  Carried carried(cloth, work);
+  for (std::size_t p = 0; p < contents.parcels(); ++p)
+    if (contents.parcel_place[p] != work.place_before[p])
+      carried.move(contents.parcel_kg[p], stencil_at(grid, work.place_before[p]), stencil_at(grid, contents.parcel_place[p]));
+  std::vector<ParcelLeak> leaked;
+  if (leaks(cloth)) leaked = leak_parcels(grid, cloth.params, work.content_before, work.lift, dt, contents);
+  for (const ParcelLeak& leak : leaked) {
+    carried.move(leak.kg, stencil_at(grid, contents.parcel_place[leak.parcel]), leak.at);
+    cloth.waiting_kg[leak.at] += leak.kg;
+  }
+  carried.apply(scratch.held);
+  if (!leaked.empty()) count_contents(grid, contents);
+}
+
+}  // namespace
+
 void step_cell_cloth(CellCloth& cloth, SoftSheetScratch& scratch, Liquid& liquid, const Air& air, const Vec3& gravity,
                      Real dt, CellExchangeReport& report, const SolidAt& solid_at) {
-  const Sheet& sheet = cloth.soft.sheet;
-  const CellGrid& grid = *cloth.grid;
   if (cloth.contents.parcels() > 0) {
-    const std::vector<Vec3> node_gravity = gravity_along(sheet, gravity);
-    const Vec3 down = normalized(gravity);
-    std::vector<Vec3> along(grid.cells());
-    std::vector<Real> height(grid.cells());
-    for (std::size_t c = 0; c < grid.cells(); ++c) {
-      const Index node = (*cloth.node_of_cell)[c];
-      along[c] = node_gravity[node], height[c] = -dot(down, sheet.position[node]);
-    }
+    flow(cloth, scratch, gravity, dt);
     const Real evaporation = 2 * evaporation_rate(air, 1, wet_bulb_temperature(air));
-    const CellStepReport cells =
-        step_cells(grid, cloth.params, cloth.contents, {along, height, evaporation}, liquid.particle_mass, dt);
-    report.evaporated_kg += cells.evaporated_kg;
-    for (const CellMove& move : cells.moves) carry(cloth, scratch.held, move.from, move.to, move.kg);
-    for (const CellLeak& leak : cells.leaks) {
-      carry(cloth, scratch.held, leak.from, leak.at, leak.kg);
-      cloth.waiting_kg[leak.at] += leak.kg;
-    }
+    report.evaporated_kg += dry_parcels(*cloth.grid, cloth.params, evaporation, liquid.particle_mass, dt, cloth.contents);
   }
-  draw_back(cloth);
+  draw_back(cloth, scratch.held);
   release(cloth, scratch, liquid, gravity, solid_at, report);
   weigh(cloth);
 }

@@ -3,19 +3,19 @@
 //
 //   arrives   a particle whose way crosses the sheet, or that lies on it: absorbed while the cell has room (a full cell
 //             bounces it, or takes it when `bounce` is off), with all its mass and momentum
-//   moves     parcels carry their mass, and the momentum of the node they leave, to the node they reach
+//   moves     parcels carry their mass, and the momentum of the nodes they leave, to the nodes they reach
 //   leaks     parcels wait at the cell where they come out, as a drop that hangs there, until it has the mass at which drops
 //             fall (hem_drops.h): then its particles are born, as a drop under the cloth
 //   weighs    added mass of a node = contents and waiting mass of its cell;  stiffness x (1 - alpha s), damping + beta s
 //
-// alpha wet softening, beta s, s saturation of the cell. Gravity along the cloth, per node the mean over its triangles
-// by area: g_t = (F^T F)^-1 F^T g, F = dx/d(u, v).
+// alpha wet softening, beta s, s saturation of the cell. How the liquid moves from cell to cell, leaks and dries: cell_flow.h.
 // Tested in tests/coupling/cell_cloth_test.cpp.
 #pragma once
 
 #include <memory>
 #include <string>
 
+#include "imbibe/coupling/cell_flow.h"
 #include "imbibe/coupling/hem_drops.h"
 #include "imbibe/coupling/release.h"
 #include "imbibe/coupling/soft_sheet.h"
@@ -53,6 +53,7 @@ struct CellCloth {
 // Sets the grid, empty contents and the map to nodes for a sheet whose params and soft part are set.
 void fit_cells(CellCloth& cloth);
 
+bool leaks(const CellCloth& cloth);        // a cell is over-full
 Real cell_kg(const CellCloth& cloth);      // in cells
 Real waiting_kg(const CellCloth& cloth);   // leaked, not yet free
 
@@ -61,9 +62,6 @@ std::vector<HangingDrop> hanging_drops(const CellCloth& cloth);
 
 // Contents of the cells over their capacity, per node of the sheet (for pictures and files).
 std::vector<float> node_saturation(const CellCloth& cloth);
-
-// Gravity along the cloth per node, m/s2 along (u, v).
-std::vector<Vec3> gravity_along(const Sheet& sheet, const Vec3& gravity);
 
 struct CellExchangeReport {
   std::size_t absorbed = 0, bounced = 0, released = 0;

@@ -9,8 +9,10 @@
 namespace imbibe {
 namespace {
 
-constexpr Real calm_speed = 1e-3;  // m/s, root mean square, below which a sheet counts as still
-constexpr Real calm_time = 0.5;    // s of it until it rests
+// A sheet that has kept its shape so long rests. Speeds are no measure: what the cloth's passes leave flickers by some mm/s
+// from substep to substep (cells of shear beside tense threads) while no node goes anywhere.
+constexpr Real calm_drift = 1e-4;  // m, root mean square over its mass
+constexpr Real calm_time = 0.5;    // s
 constexpr Real least_waking_share = 0.01;  // of its weight: a change of load that moves a resting sheet again
 constexpr Real load_averaging_time = 0.05;  // s: some hundred steps of the liquid, whose pressure flickers by a few per cent
 
@@ -33,13 +35,21 @@ bool may_rest(const SoftSheet& soft) {
   return true;
 }
 
+// m, root mean square, from where it was when the calm began; infinite when none has.
+Real drift(const SoftSheet& soft) {
+  const Sheet& sheet = soft.sheet;
+  if (soft.calm_place.size() != sheet.size()) return std::numeric_limits<Real>::infinity();
+  Real sum = 0;
+  for (std::size_t n = 0; n < sheet.size(); ++n) sum += sheet.mass(n) * squared_norm(sheet.position[n] - soft.calm_place[n]);
+  return std::sqrt(sum / total_mass(sheet));
+}
+
 void judge_rest(SoftSheet& soft, Real dt) {
-  const Real mass = total_mass(soft.sheet);
-  const bool still = kinetic_energy(soft.sheet) < 0.5 * mass * calm_speed * calm_speed && may_rest(soft);
-  soft.calm_s = still ? soft.calm_s + dt : 0;
+  soft.calm_s += dt;
+  if (!may_rest(soft) || drift(soft) > calm_drift) soft.calm_s = 0, soft.calm_place = soft.sheet.position;
   if (soft.calm_s < calm_time) return;
   soft.at_rest = true;
-  soft.mass_at_rest = mass;
+  soft.mass_at_rest = total_mass(soft.sheet);
   soft.load_at_rest = soft.load;
   soft.support_impulse -= momentum(soft.sheet);  // what holds it from now on stops it
   std::fill(soft.sheet.velocity.begin(), soft.sheet.velocity.end(), Vec3{});
@@ -70,8 +80,8 @@ void judge_load(SoftSheet& soft, const Vec3& gravity, Real dt) {
   soft.load.moment += blend * (soft.given.moment / dt - soft.load.moment);
   soft.given = {};
   if (!soft.at_rest) return;
-  // Without gravity: what would bring it to the speed of still sheets within the time that rest takes.
-  const Real least = total_mass(soft.sheet) * std::max(least_waking_share * norm(gravity), calm_speed / calm_time);
+  // Without gravity: what would move it as far as a sheet at rest may drift.
+  const Real least = total_mass(soft.sheet) * std::max(least_waking_share * norm(gravity), 2 * calm_drift / (calm_time * calm_time));
   if (norm(soft.load.force - soft.load_at_rest.force) > least ||
       norm(soft.load.moment - soft.load_at_rest.moment) > least * half_extent(soft.sheet))
     wake(soft);

@@ -15,6 +15,7 @@
 
 #include "imbibe/cloth/cloth_step.h"
 #include "imbibe/core/random.h"
+#include "imbibe/coupling/cell_flow.h"
 #include "imbibe/geometry/moving_mesh.h"
 #include "imbibe/liquid/occupancy.h"
 #include "imbibe/liquid/particles.h"
@@ -28,7 +29,7 @@ struct SheetLoad {
   Vec3 force{}, moment{};
 };
 
-// A sheet that has hardly moved for half a second rests: it is held where it is, as by supports, until its mass or the mean
+// A sheet that has kept its shape for half a second rests: it is held where it is, as by supports, until its mass or the mean
 // load of the liquid is another than when it came to rest. Books: momentum of the sheet = support_impulse + liquid_impulse
 // + what liquid taken in brought + weight of the moving sheet and air; the weight of a resting or fixed one its supports take.
 struct SoftSheet {
@@ -40,6 +41,7 @@ struct SoftSheet {
   SheetLoad given{};              // N s and N m s, by free liquid in this step (state)
   SheetLoad load{};               // by free liquid, running mean (state)
   Real calm_s = 0;                // s for which it has hardly moved (state)
+  std::vector<Vec3> calm_place;   // m per node, where it was when that began (state)
   Real mass_at_rest = 0;          // kg, when it came to rest (state)
   SheetLoad load_at_rest{};       // then (state)
   bool at_rest = false;           // it is not stepped until something changes (state)
@@ -64,6 +66,7 @@ struct SoftSheetScratch {
   std::vector<std::vector<SheetHit>> hit_tiles;
   std::vector<Vec3> footprint;     // where a particle that is taken in goes, m in the sheet
   Occupancy occupancy;             // where leaks may be born
+  CellFlowScratch cells;           // of a cloth of cells
 };
 
 // Which nodes are held at the sheet's time: by pins, or all of them because it is fixed or at rest.

@@ -15,7 +15,7 @@
 
 namespace imbibe {
 
-inline constexpr int checkpoint_version = 3;
+inline constexpr int checkpoint_version = 4;
 
 // Throws OutputError when the disk will not take it; an older checkpoint of that name then stays.
 void write_checkpoint(const std::filesystem::path& path, const World& world);

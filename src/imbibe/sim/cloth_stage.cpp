@@ -12,12 +12,6 @@ constexpr Real interval_of_moving_cloth = 5e-3;   // s: liquid inside the cloth 
 constexpr Real interval_of_leaking_cloth = 2e-2;  // s, at rest
 constexpr Real interval_of_wet_cloth = 1;         // s, at rest and nothing due to leak
 
-bool leaks(const CellCloth& cloth) {
-  for (std::size_t c = 0; c < cloth.grid->cells(); ++c)
-    if (cloth.contents.content_kg[c] > cloth.grid->capacity(c)) return true;
-  return false;
-}
-
 Real longest_step(const CellCloth& cloth) {
   if (cloth.soft.moves()) return interval_of_moving_cloth;
   if (cloth.contents.parcels() == 0 && waiting_kg(cloth) == 0) return std::numeric_limits<Real>::infinity();

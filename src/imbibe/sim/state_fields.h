@@ -38,6 +38,7 @@ void visit_soft_sheet(Visitor& v, AnySheet& soft, const std::string& group) {
   v.value("load_at_rest_force", soft.load_at_rest.force);
   v.value("load_at_rest_moment", soft.load_at_rest.moment);
   v.value("calm_s", soft.calm_s);
+  v.array("calm_place", soft.calm_place);
   v.value("mass_at_rest", soft.mass_at_rest);
   v.value("at_rest", soft.at_rest);
 }
