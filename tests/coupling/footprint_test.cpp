@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 
 #include "imbibe/coupling/absorption.h"
@@ -44,6 +45,14 @@ TEST(Footprint, AvailableMassIsTheMassOfTheTouchingParticlesLessTheirDebt) {
   Real available = 0;
   for (const FaceSupply& supply : s.footprint.supplies) available += supply.available_kg;
   EXPECT_NEAR(available, (64 - 3.5) * s.liquid.particle_mass, 1e-12 * 64 * s.liquid.particle_mass);
+}
+
+TEST(Footprint, AParticleWithoutAPlaceTouchesNothing) {  // as a damaged checkpoint may hold it
+  Scene s;
+  s.add_layer(2, 0, 0);
+  s.liquid.particles.position[1].x = std::numeric_limits<float>::quiet_NaN();
+  s.find();
+  EXPECT_EQ(s.footprint.particle, (std::vector<Index>{0, 2, 3}));
 }
 
 TEST(Footprint, NodesUnderTheMiddleOfALayerAreFullyWetted) {

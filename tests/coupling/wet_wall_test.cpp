@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "support/woven.h"
 
 namespace imbibe {
@@ -50,6 +52,16 @@ TEST(FaceMap, FindsEveryNodeWithinReach) {
     for (Index k = 0; k < fabric.network.nodes(); ++k) all += within(k);
     map.near(at.x, at.y, true, [&](const FaceMap::Node& n) { found += within(n.index); });
     EXPECT_EQ(found, all);
+  }
+}
+
+TEST(FaceMap, NoNodeIsNearAPlaceFarAwayOrOneThatIsNoNumber) {
+  const Fabric fabric = test::woven("cotton", "cotton", 10);
+  const FaceMap map = build_face_map(fabric.network, 0.7e-3);
+  const Real infinity = std::numeric_limits<Real>::infinity(), nan = std::numeric_limits<Real>::quiet_NaN();
+  for (const Real x : {1e30, -1e30, infinity, -infinity, nan}) {
+    map.near(x, 0, true, [&](const FaceMap::Node&) { ADD_FAILURE() << "a node near x = " << x; });
+    map.near(0, x, true, [&](const FaceMap::Node&) { ADD_FAILURE() << "a node near y = " << x; });
   }
 }
 

@@ -255,6 +255,16 @@ TEST(Checkpoint, of_a_source_that_owes_what_no_rounding_leaves_is_refused) {
   }
 }
 
+TEST(Checkpoint, of_textiles_not_stepped_for_longer_than_any_run_leaves_them_is_refused) {
+  const TemporaryFolder folder;
+  for (const Real since : {3.5e30, -1.0, std::nan("")}) {  // the first was a finding of the fuzzer: 50,000 steps of 300 s
+    World world = filled_world(), read = built_world();
+    world.pace.since_wetting = since;
+    write_checkpoint(folder / "c.h5", world);
+    EXPECT_THROW(read_checkpoint(folder / "c.h5", read), InputError) << since;
+  }
+}
+
 TEST(Checkpoint, that_does_not_fit_on_the_disk_leaves_the_last_one_intact) {
   const TemporaryFolder folder;
   World world = filled_world(100);

@@ -30,17 +30,27 @@ struct FaceMap {
   std::vector<float> cos_receding;
   std::vector<std::uint8_t> on_upper, on_lower;  // per node: liquid on that face touches it
 
+  // Bin numbers of a place; -2 where no bin is within one of it, also for coordinates that are no numbers.
+  int column_of(Real x) const { return bin_number(x - x0, bins_x); }
+  int row_of(Real y) const { return bin_number(y - y0, bins_y); }
+
   // Calls visit(const Node&) for the nodes of the upper or lower face in the 3 x 3 bins around (x, y): all within reach and some
   // beyond.
   template <class Visit>
   void near(Real x, Real y, bool upper, Visit&& visit) const {
-    const int bx = static_cast<int>(std::floor((x - x0) / bin)), by = static_cast<int>(std::floor((y - y0) / bin));
+    const int bx = column_of(x), by = row_of(y);
     for (int j = std::max(by - 1, 0); j <= std::min(by + 1, bins_y - 1); ++j)
       for (int i = std::max(bx - 1, 0); i <= std::min(bx + 1, bins_x - 1); ++i) {
         const std::size_t b = static_cast<std::size_t>(j) * bins_x + i;
         for (Index k = first[b]; k < first[b + 1]; ++k)
           if (upper ? nodes[k].upper : nodes[k].lower) visit(nodes[k]);
       }
+  }
+
+ private:
+  int bin_number(Real from_corner, int bins) const {
+    const Real number = std::floor(from_corner / bin);
+    return number >= -1 && number <= bins ? static_cast<int>(number) : -2;
   }
 };
 

@@ -113,7 +113,8 @@ void find_footprint(const Liquid& liquid, const YarnNetwork& network, const Clot
   for (std::size_t i = 0; i < liquid.particles.size(); ++i) {
     const Float4& x = liquid.particles.position[i];
     const Vec3 p = place.to_sheet({x.x, x.y, x.z});
-    if (std::abs(p.z) > reach_z || std::abs(p.x) > half_x || std::abs(p.y) > half_y) continue;
+    const bool touches = std::abs(p.z) <= reach_z && std::abs(p.x) <= half_x && std::abs(p.y) <= half_y;
+    if (!touches) continue;  // nor does a place that is no number: the step's end reports that particle
     const std::size_t before = f.links.size();
     add_links(map, p, dx * dx, f);
     if (f.links.size() == before) {  // beside the last node of the border: nothing to touch

@@ -39,8 +39,7 @@ class NearFaces {
     Vec3 at;
   };
   long bin_of(Real x, Real y) const {
-    return static_cast<long>(std::floor((y - map_.y0) / map_.bin)) * (map_.bins_x + 4L) +
-           static_cast<long>(std::floor((x - map_.x0) / map_.bin));
+    return map_.row_of(y) * (map_.bins_x + 4L) + map_.column_of(x);
   }
   std::vector<Place>::const_iterator first_of(long bin) const {
     return std::lower_bound(places_.begin(), places_.end(), bin, [](const Place& p, long b) { return p.bin < b; });

@@ -18,6 +18,7 @@
 #include "imbibe/core/random.h"
 #include "imbibe/sim/state_fields.h"
 #include "imbibe/sim/state_hash.h"
+#include "imbibe/wetting/wetting_step.h"
 
 namespace imbibe {
 
@@ -285,6 +286,11 @@ std::vector<std::string> mismatches(const World& read, const World& built) {
   for (const std::size_t size : {p.velocity.size(), p.id.size(), p.kind.size(), p.density.size(), p.pressure.size(),
                                  p.warm_pressure.size(), p.warm_divergence.size(), p.owed_kg.size()}) {
     if (size != p.size()) problems.push_back("particle arrays differ in length");
+  }
+  // The network would be stepped over all of it.
+  if (!read.textiles.empty() && !(read.pace.since_wetting >= 0 && read.pace.since_wetting <= longest_wetting_step)) {
+    problems.push_back(fmt::format("textiles were last stepped {} s ago; no run lets more than {} s pass",
+                                   read.pace.since_wetting, longest_wetting_step));
   }
   const Real particle_volume = built.liquid.particle_mass / built.liquid.kind.density;
   for (std::size_t i = 0; i < read.sources.size(); ++i) {

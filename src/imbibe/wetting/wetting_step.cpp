@@ -12,7 +12,6 @@ namespace imbibe {
 namespace {
 
 constexpr Real first_step = 1e-4;     // s
-constexpr Real longest_step = 300;    // s
 constexpr int easy_newton = 8;        // iterations of a step that may grow
 constexpr int hard_newton = 14;       // of one that should have been shorter
 constexpr Real moved_in_step = 0.05;   // share of the liquid that should change its node in one step
@@ -67,12 +66,12 @@ Real next_step(Real dt, const Substep& substep) {
 // The longest step with liquid in the cloth. Evaporation is local and comes before transport: in longer steps a node
 // would run dry and stop giving off vapour while its neighbours could still feed it.
 Real longest_drying_step(const WettingModel& m, const Air& air) {
-  if (!m.params.evaporation) return longest_step;
+  if (!m.params.evaporation) return longest_wetting_step;
   const bool wet_bulb = m.params.surface_temperature == SurfaceTemperature::wet_bulb;
   const Real rate = evaporation_rate(air, 1, wet_bulb ? wet_bulb_temperature(air) : air.temperature);
-  if (rate <= 0) return longest_step;
+  if (rate <= 0) return longest_wetting_step;
   const Real per_second = rate * m.greatest_vapour_area / m.liquid.density;
-  return per_second > 0 ? std::min(longest_step, dried_in_step / per_second) : longest_step;
+  return per_second > 0 ? std::min(longest_wetting_step, dried_in_step / per_second) : longest_wetting_step;
 }
 
 }  // namespace
@@ -145,13 +144,13 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
       taken_kg[i] += work.supply_kg[i];
       report.taken_kg += work.supply_kg[i];
     }
-    step = std::min(next_step(now, substep), substep.transport.active_nodes > 0 ? longest : longest_step);
+    step = std::min(next_step(now, substep), substep.transport.active_nodes > 0 ? longest : longest_wetting_step);
     // A sliver at the end of dt says nothing about the step that would be right.
     if (!last || report.substeps == 1) report.suggested_step = step;
     report.advanced_s = last ? dt : report.advanced_s + now;
   }
   release_surplus(model, contents, dt, report.released);
-  report.suggested_step = std::clamp(report.suggested_step, 1e-9, longest_step);
+  report.suggested_step = std::clamp(report.suggested_step, 1e-9, longest_wetting_step);
   return report;
 }
 
@@ -159,8 +158,8 @@ Real suggested_wetting_step(const WettingModel& model, const Contents& contents,
   TransportWorkspace work;
   const TransportInput input{.model = &model, .supplies = {}, .available_kg = {}, .gravity = gravity, .dt = first_step};
   const Real rate = largest_saturation_rate(input, contents, work);
-  if (work.active.empty()) return longest_step;
-  return std::clamp(rate > 0 ? 0.3 / rate : longest_step, first_step, longest_drying_step(model, air));
+  if (work.active.empty()) return longest_wetting_step;
+  return std::clamp(rate > 0 ? 0.3 / rate : longest_wetting_step, first_step, longest_drying_step(model, air));
 }
 
 }  // namespace imbibe

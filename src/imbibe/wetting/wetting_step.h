@@ -30,6 +30,8 @@ struct GravityField {
   std::span<const Real> potential, across;
 };
 
+inline constexpr Real longest_wetting_step = 300;  // s, of a suggested step
+
 struct WettingReport {
   Real advanced_s = 0;          // how far it came; = dt unless `converged` is false
   bool converged = true;
@@ -65,7 +67,8 @@ WettingReport step_wetting(const WettingModel& model, Contents& contents, std::s
                            std::span<Real> taken_kg, const Air& air, const Vec3& gravity, Real dt,
                            const GravityField* field = nullptr);
 
-// A first step when no report is at hand: no node changes its saturation by more than about 0.3, within [1e-4, 300] s.
+// A first step when no report is at hand: no node changes its saturation by more than about 0.3, within [1e-4 s,
+// longest_wetting_step].
 Real suggested_wetting_step(const WettingModel& model, const Contents& contents, const Air& air, const Vec3& gravity);
 
 }  // namespace imbibe
