@@ -11,6 +11,12 @@
 
 namespace imbibe::bench {
 
+World world_of(const std::string& text) {
+  std::vector<std::string> data;
+  if (const char* folder = std::getenv("IMBIBE_DATA_DIR")) data.emplace_back(folder);
+  return build_world(read_scene_text(text, "bench.yaml"), read_library(library_folders("bench.yaml", data)));
+}
+
 World cloth_world(std::int64_t nodes, const std::string& liquid) {
   const double side = std::sqrt(static_cast<double>(nodes) / 3) / 3000;  // m; 30 yarns per cm, 3 nodes per crossing
   const std::string text = fmt::format(R"(version: 1
@@ -28,10 +34,7 @@ textiles:
 limits: {{max_particles: 1e8, max_memory: 20 GB, max_disk: 10000 GB}}
 )",
                                        liquid.empty() ? "  particle_mass: 0.1 mg" : liquid, side, side);
-  const Scene scene = read_scene_text(text, "bench.yaml");
-  std::vector<std::string> data;
-  if (const char* folder = std::getenv("IMBIBE_DATA_DIR")) data.emplace_back(folder);
-  return build_world(scene, read_library(library_folders("bench.yaml", data)));
+  return world_of(text);
 }
 
 void wet(Textile& textile) {

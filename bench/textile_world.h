@@ -8,6 +8,9 @@
 
 namespace imbibe::bench {
 
+// Of a scene file's text.
+World world_of(const std::string& text);
+
 // A square of shirting with about `nodes` segments and pores and no liquid; `extra` is appended to the scene's text.
 World cloth_world(std::int64_t nodes, const std::string& liquid = "");
 
