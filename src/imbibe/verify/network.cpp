@@ -42,7 +42,8 @@ CaseResult maximum_principle(CaseRunner& runner) {
   for (const Variant& v : variants) {
     World w = runner.world("swatch", {"textiles[0].wetting.network.model=" + std::string(v.model), set("textiles[0].wetting.network.crossing_factor", v.crossing),
                                       fmt::format("textiles[0].wetting.network.pores={}", v.pores), "textiles[0].wetting.network.evaporation=false",
-                                      "textiles[0].wetting.network.sorption=none", "textiles[0].wetting.network.swelling=false", "textiles[0].size=[2 mm, 2 mm]"});
+                                      "textiles[0].wetting.network.sorption=none", "textiles[0].wetting.network.swelling=false", "textiles[0].wetting.network.residual=1e-9",
+                                      "textiles[0].size=[2 mm, 2 mm]"});
     Textile& t = w.textiles[0];
     const WettingModel& m = *t.model;
     Real mass = 0, over = 0, below = 0;
@@ -142,7 +143,8 @@ CaseResult dense(CaseRunner& runner) {
                                      fmt::format("textiles[0].warp.density={:.3f} /cm", draw(1, 12, 25)), fmt::format("textiles[0].weft.density={:.3f} /cm", draw(2, 12, 25)),
                                      set("textiles[0].wetting.network.crossing_factor", draw(3, 0, 10)), fmt::format("textiles[0].size=[{:.2f} mm, {:.2f} mm]", draw(4, 1.5, 3), draw(5, 1.5, 3)),
                                      "textiles[0].wetting.network.pores=false", "textiles[0].wetting.network.evaporation=false",
-                                     "textiles[0].wetting.network.sorption=none", "textiles[0].wetting.network.swelling=false"};
+                                     "textiles[0].wetting.network.sorption=none", "textiles[0].wetting.network.swelling=false",
+                                     "textiles[0].wetting.network.residual=1e-9"};
     World w = runner.world("swatch", o);
     Textile& t = w.textiles[0];
     const WettingModel& m = *t.model;

@@ -51,10 +51,11 @@ void for_rows_of_blocks(std::size_t rows, Each&& each, Back&& back) {
     const std::size_t count = last - first;
     for (std::size_t k = 0; k < count; ++k)
       turn[k] = {(first + k) * factor_block, std::min(rows, (first + k + 1) * factor_block)};
-    for (std::size_t r = 0; r < factor_block; ++r)
+    const std::size_t longest = turn[0].end - turn[0].begin;  // only the last of all blocks may be shorter
+    for (std::size_t r = 0; r < longest; ++r)
       for (std::size_t k = 0; k < count; ++k)
         if (turn[k].begin + r < turn[k].end) each(turn[k], turn[k].begin + r);
-    for (std::size_t r = 1; r <= factor_block; ++r)
+    for (std::size_t r = 1; r <= longest; ++r)
       for (std::size_t k = 0; k < count; ++k)
         if (turn[k].begin + r <= turn[k].end) back(turn[k], turn[k].end - r);
   }, std::clamp<std::size_t>((blocks + threads - 1) / threads, 1, most_in_turn));

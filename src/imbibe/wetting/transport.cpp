@@ -10,7 +10,6 @@
 namespace imbibe {
 namespace {
 
-constexpr Real residual_tolerance = 1e-9;  // of saturation
 constexpr int most_newton = 25;
 constexpr int undamped_newton = 12;       // iterations in Y before the damped ones in s
 constexpr Real straight_change = 1e-3;    // of a saturation, relative: up to here Y is a straight line
@@ -105,19 +104,20 @@ Real moved_saturation(const WettingModel& m, const Work& w, std::size_t i, Real 
 
 bool newton(const TransportInput& input, Work& w, TransportResult& result) {
   const WettingModel& m = *input.model;
+  const Real wanted = m.params.residual;
   w.previous = w.saturation;
   Real last = 1e-3;
   for (int iteration = 0; iteration < most_newton; ++iteration) {
     evaluate_all(input, w);
     const Real largest = assemble(input, w, true);
     if (!std::isfinite(largest)) return false;
-    if (largest <= residual_tolerance) return true;
+    if (largest <= wanted) return true;
     ++result.newton_iterations;
     // As exact as the iteration can use (Eisenstat and Walker's second choice): Newton is far from its parabola at first.
     const Real ratio = largest / last;
     last = largest;
     const Real forcing = std::clamp<Real>(ratio * ratio, 1e-4, 1e-2);
-    const LinearSolve solve = solve_bicgstab(w.matrix, w.residual, w.change, forcing, 0.1 * residual_tolerance,
+    const LinearSolve solve = solve_bicgstab(w.matrix, w.residual, w.change, forcing, 0.1 * wanted,
                                              most_linear, w.linear);
     result.linear_iterations += solve.iterations;
     if (!std::isfinite(solve.residual)) return false;

@@ -1,6 +1,6 @@
 // One implicit step of liquid on the network: backward Euler, Newton, and a last update of masses from edge flows.
 //
-//   V_i (s_i - s_i^n) + dt [sum_j q_ij - q_supply,i + q_release,i] = 0,   |residual| <= 1e-9 V_i
+//   V_i (s_i - s_i^n) + dt [sum_j q_ij - q_supply,i + q_release,i] = 0,   |residual| <= residual V_i
 //   supply   inflow_i dt = min(law_i(s_i) dt, available_i)                (complementarity, inside the residual)
 //   release  q = T max(p_i + rho |g_n| z - P_open,i, 0) to the lower of the faces that no liquid covers, z m below the
 //            node; and what stands above s = 1 + delta when the step is done
@@ -10,8 +10,9 @@
 // conductances, u_i its potential): saturation where storage rules, potential where flow does. In s alone full nodes
 // would halt one by one at the kink of p(s) at s = 1.
 // Only wet nodes, supplied nodes and their neighbours are solved; the set grows when liquid reaches its rim. The final
-// masses come from the flows, each computed once per edge, so they add up to rounding at any tolerance; a node that
-// this would leave below zero (by the tolerance) has its outflows cut to what it holds.
+// masses come from the flows, each computed once per edge, so they add up to rounding whatever the residual, which is
+// an error of flows then, far below that of a step in which a twentieth of the liquid changes its node; a node that
+// this would leave below zero has its outflows cut to what it holds.
 // The maximum principle holds without gravity and supply: at the node of highest pressure every link flows outward.
 // Tested in tests/wetting/network_test.cpp, spreading_test.cpp and behaviour_test.cpp.
 #pragma once

@@ -61,6 +61,7 @@ struct WettingParams {
   Real wetted_at = 0.1;                  // saturation from which all fibres of a segment are wetted
   Real redistribution_factor = 0.1;      // Kuenzel: D_ww / D_ws once nothing supplies the cloth
   Real printed_pore_velocity = 1e-3;     // m/s, U of eq. 10 as printed
+  Real residual = 1e-6;                  // what may be left of a node's equation, in parts of its volume (transport.h)
 };
 
 template <class V>
@@ -102,6 +103,8 @@ void describe(V& v, WettingParams& p) {
           {.min = 0, .max = 1, .help = "Kuenzel: D_ww / D_ws once nothing supplies the cloth"});
   v.value("printed_pore_velocity", p.printed_pore_velocity,
           {.unit = "m/s", .min = 0, .max = 10, .help = "U of eq. 10 in the model as printed"});
+  v.value("residual", p.residual,
+          {.min = 1e-12, .max = 1e-4, .help = "what the solver may leave of a node's equation, in parts of its volume"});
 }
 
 inline constexpr std::uint8_t upper_face = 1, lower_face = 2;  // of the sheet, at +z and -z
