@@ -17,6 +17,7 @@ using namespace imbibe::test;
 const std::set<std::string> open_goals = {
     "taylor-green-pressed", "poiseuille", "couette",     "static-drop",       "rayleigh",  "sessile",
     "sessile-gravity", "hysteresis",        "incline",    "coalescence", "slot", "uptake-resolution", "stain-area",
+    "drop-on-ball",    "drop-on-cone",      "drop-on-weave",
 };
 
 TEST(VerifyCommand, QuickFormRunsAllCasesAndAllButTheOpenGoalsPass) {

@@ -59,6 +59,51 @@ TEST(DropMeasure, gives_the_angle_base_and_height_of_a_shape_that_is_known) {
     }
 }
 
+// A jittered body-centred lattice of the liquid, `spacing` apart, where inside(x).
+template <class Inside>
+Liquid lattice_where(Real spacing, Real reach, Inside&& inside) {
+  Liquid liquid;
+  liquid.particle_mass = liquid.kind.density * spacing * spacing * spacing;
+  const Real edge = std::cbrt(2.0) * spacing;
+  const int cells = static_cast<int>(std::ceil(reach / edge));
+  std::uint64_t id = 0;
+  for (int k = -cells; k < cells; ++k)
+    for (int j = -cells; j < cells; ++j)
+      for (int i = -cells; i < cells; ++i)
+        for (const Real half : {0.25, 0.75}) {
+          const Vec3 x = Vec3{i + half, j + half, k + half} * edge;
+          const auto jitter = [&](std::uint64_t s) { return 0.1 * spacing * (2 * uniform({3, id, 0}, s) - 1); };
+          ++id;
+          if (inside(x)) add_particle(liquid, x + Vec3{jitter(0), jitter(1), jitter(2)}, {});
+        }
+  return liquid;
+}
+
+TEST(DropMeasure, gives_the_angle_on_a_ball_and_on_a_cone) {
+  const Real b = 4e-3, slope = radians(20), spacing = 0.16e-3;
+  const Shape ball = Sphere{{0, 0, -b}, b}, cone = Cone{{0, 0, -6e-3 * std::tan(slope)}, {0, 0, 1}, 6e-3, 6e-3 * std::tan(slope)};
+  for (const Real angle : {60.0, 90.0, 120.0}) {
+    // The free surface is a sphere about (0, 0, z) that meets the solid at the distance a from the axis.
+    const Real a = angle < 100 ? 1.8e-3 : 1.1e-3;
+    for (const Shape& solid : {ball, cone}) {
+      const bool round = std::holds_alternative<Sphere>(solid);
+      const Real fall = round ? std::asin(a / b) : slope, level = round ? std::sqrt(b * b - a * a) - b : -a * std::tan(slope);
+      const Real phi = radians(angle) + fall, radius = a / std::sin(phi), z = level - radius * std::cos(phi);
+      const Liquid liquid = lattice_where(spacing, 5e-3, [&](const Vec3& x) {
+        return x.z > -2e-3 && norm(x - Vec3{0, 0, z}) < radius && nearest_surface(solid, x).distance > 0;
+      });
+      const DropMeasure m = measure_drop_on(liquid, solid, Plane{}, 0);
+      std::printf("  %3.0f deg on a %s: %6.2f; base %.3f height %.3f volume %.3f\n", angle, round ? "ball" : "cone", degrees(m.fit_angle),
+                  m.base_radius / a, m.height / (z + radius), m.volume / (liquid.mass() / liquid.kind.density));
+      EXPECT_NEAR(degrees(m.fit_angle), angle, 2);
+      EXPECT_NEAR(degrees(m.base_slope), angle + degrees(fall), 2);
+      EXPECT_NEAR(m.base_radius / a, 1, 0.03);
+      EXPECT_NEAR(m.height / (z + radius), 1, 0.03);
+      EXPECT_NEAR(m.volume / (liquid.mass() / liquid.kind.density), 1, 0.03);
+    }
+  }
+}
+
 TEST(DropMeasure, does_not_mind_spray_around_the_drop_or_where_the_plane_lies) {
   const SessileShape shape = sessile_shape(10e-9, radians(70), 0);
   Liquid liquid = drop_of_shape(shape, 8);

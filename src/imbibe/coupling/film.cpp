@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "imbibe/core/portable.h"
 #include "imbibe/coupling/wet_wall.h"
+#include "imbibe/liquid/drop_shape.h"
 
 namespace imbibe {
 namespace {
@@ -85,11 +85,10 @@ void reach_flush_pores(const FaceMap& map, const WettingModel& m, const Contents
 }  // namespace
 
 Real cap_base_area(Real volume, Real cos_angle) {
-  const Real c = std::clamp<Real>(cos_angle, -1, 1), sine = std::sqrt(1 - c * c);
-  const Real shape = (2 - 3 * c + c * c * c) * pi;
-  if (!(shape > 0)) return std::numeric_limits<Real>::infinity();
-  const Real radius = sine * portable::cbrt(3 * volume / shape);
-  return pi * radius * radius;
+  const Real c = std::clamp<Real>(cos_angle, -1, 1);
+  if (c == 1) return std::numeric_limits<Real>::infinity();
+  const Real radius = cap_radius(volume, c);
+  return pi * (1 - c * c) * radius * radius;
 }
 
 void spread_films(const Liquid& liquid, const FaceMap& map, const WettingModel& m, const Contents& contents,

@@ -38,6 +38,14 @@ struct Ode {
 
 }  // namespace
 
+Real cap_volume(Real radius, Real cosine) {
+  return pi / 3 * (2 + cosine) * (1 - cosine) * (1 - cosine) * radius * radius * radius;
+}
+
+Real cap_radius(Real volume, Real cosine) {
+  return portable::cbrt(3 * volume / (pi * (2 + cosine) * (1 - cosine) * (1 - cosine)));
+}
+
 SessileShape sessile_profile(Real apex_curvature, Real c, Real angle, Real height, Real longest_step) {
   IMBIBE_ASSERT(apex_curvature > 0 && c >= 0 && angle > 0 && angle <= pi && height > 0 && longest_step > 0);
   constexpr Real turn = 0.01;  // rad per step
@@ -77,8 +85,7 @@ SessileShape sessile_shape(Real volume, Real angle, Real c) {
   const Real size = portable::cbrt(volume), infinite = std::numeric_limits<Real>::infinity();
   const auto with = [&](Real b) { return sessile_profile(b, c, angle, infinite, 0.01 * size); };
   // A cap without gravity has the most curved apex; from there down until the volume is too large.
-  const Real cosine = portable::cos(angle);
-  Real high = portable::cbrt(pi / 3 * (2 + cosine) * (1 - cosine) * (1 - cosine) / volume) * (1 + 1e-9);
+  Real high = (1 + 1e-9) / cap_radius(volume, portable::cos(angle));
   if (c == 0) return with(high / (1 + 1e-9));
   Real low = high;
   while (with(low).volume < volume) low /= 2;

@@ -32,6 +32,11 @@ struct SessileShape {
   std::vector<ProfilePoint> profile;  // from the apex to the wall
 };
 
+// A cap of a sphere that its base's plane cuts under the angle with this cosine:
+//   V = pi R^3/3 (2 + c)(1 - c)^2      R its sphere's radius [m]; infinite for c = 1
+Real cap_volume(Real radius, Real cosine);
+Real cap_radius(Real volume, Real cosine);
+
 // The drop of this volume [m3] that meets the wall under `angle` [rad, 0 < angle < pi]. c: rho g/gamma [1/m2], >= 0.
 SessileShape sessile_shape(Real volume, Real angle, Real c);
 

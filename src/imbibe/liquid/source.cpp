@@ -7,6 +7,7 @@
 #include "imbibe/core/portable.h"
 #include "imbibe/core/random.h"
 #include "imbibe/geometry/direction.h"
+#include "imbibe/liquid/drop_shape.h"
 #include "imbibe/liquid/kernel.h"
 
 namespace imbibe {
@@ -31,10 +32,7 @@ Vec3 unit_axes(const Source& s) {
   return s.stretch / mean;
 }
 
-Real cap_radius(const Source& s) {
-  const Real c = portable::cos(s.cap_angle);
-  return portable::cbrt(3 * s.volume / (pi * (2 + c) * (1 - c) * (1 - c)));
-}
+Real cap_radius(const Source& s) { return imbibe::cap_radius(s.volume, portable::cos(s.cap_angle)); }
 
 // The `count` points of a cubic lattice that lie deepest in the ball, ellipsoid or cap of the source. The lattice's
 // corner lies in the centre, so that all eight octants of a ball are equal. A drop's motion breaks this lattice up at once; a

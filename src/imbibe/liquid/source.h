@@ -1,7 +1,7 @@
 // Where liquid comes from: drops, boxes of liquid, a timed dropper (a drop repeated), and a pipe.
 //
 // A drop is born as a ball, as an ellipsoid of its volume, or as a spherical cap on a level plane at its centre.
-//   cap     R = (3 V/(pi (2 + cos a)(1 - cos a)^2))^(1/3), its sphere's centre R cos a under the base
+//   cap     of a sphere of cap_radius (drop_shape.h), whose centre is R cos a under the base
 //   vortex  u = U sin(pi x/a) cos(pi y/b), v = -U (b/a) cos(pi x/a) sin(pi y/b), x and y from the box's corner, a x b its size
 // A pipe lets go single particles at a steady rate, each from a random place inside its bore (counter-based random: seed,
 // number of the particle), with a constant velocity along it. Particles due since the last step are carried on by what

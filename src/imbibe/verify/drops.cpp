@@ -7,44 +7,12 @@
 #include <complex>
 #include <limits>
 
-#include "imbibe/liquid/drop_measure.h"
+#include "imbibe/liquid/drop_shape.h"
 #include "imbibe/verify/families.h"
+#include "imbibe/verify/resting.h"
 
 namespace imbibe::verify {
 namespace {
-
-Real volume_of(Real radius) { return 4 * pi / 3 * radius * radius * radius; }
-constexpr Real water_density = 998.2;
-
-// A particle mass that puts `across` particles on the radius of a ball of this volume.
-std::string resolution(Real volume, Real across) {
-  const Real spacing = std::cbrt(3 * volume / (4 * pi)) / across;
-  return set("liquid.particle_mass", water_density * spacing * spacing * spacing, "kg");
-}
-
-Real capillary_time(const World& w, Real radius) {
-  return std::sqrt(w.liquid.kind.density * radius * radius * radius / w.liquid.kind.surface_tension);
-}
-
-struct Moments {
-  Vec3 centre{}, momentum{};
-  Real xx = 0, yy = 0, zz = 0, speed = 0;
-};
-Moments moments(const Liquid& liquid) {
-  Moments m;
-  const auto n = static_cast<Real>(liquid.particles.size());
-  for (std::size_t i = 0; i < liquid.particles.size(); ++i) {
-    const Float4 &x = liquid.particles.position[i], &u = liquid.particles.velocity[i];
-    m.centre += Vec3{x.x, x.y, x.z} / n, m.momentum += liquid.particle_mass * Vec3{u.x, u.y, u.z};
-    m.speed += (u.x * u.x + u.y * u.y + u.z * u.z) / n;
-  }
-  for (const Float4& p : liquid.particles.position) {
-    const Vec3 d = Vec3{p.x, p.y, p.z} - m.centre;
-    m.xx += d.x * d.x / n, m.yy += d.y * d.y / n, m.zz += d.z * d.z / n;
-  }
-  m.speed = std::sqrt(m.speed);
-  return m;
-}
 
 // Mean pressure well inside a free drop: nearer to its centre than 0.6 of its radius.
 Real inner_pressure(const Liquid& liquid, Real radius) {
@@ -238,39 +206,6 @@ CaseResult rayleigh(CaseRunner& runner) {
   return r;
 }
 
-struct Resting {
-  Real fit = 0, slope = 0, base = 0, height = 0, volume = 0, force = 0, speed = 0;
-};
-
-// Capillary times at the end of a run over which a resting drop is averaged: about one oscillation, the slowest being that
-// of the tallest drop.
-constexpr Real averaged = 4;
-
-// Mean over the last oscillation of the run.
-Resting settle(CaseRunner& runner, std::vector<std::string> o, Real units, World* kept = nullptr) {
-  const World at_start = runner.world("sessile", o);
-  const Real volume = at_start.sources[0].volume, unit = capillary_time(at_start, std::cbrt(3 * volume / (4 * pi)));
-  const Real end = units * unit, from = end - averaged * unit;
-  o.push_back(set("duration", end, "s"));
-  o.push_back(set("output.every", 0.1 * unit, "s"));
-  Resting mean;
-  Real count = 0, steps = 0;
-  const Plane plane = std::get<Plane>(at_start.solids[0].shape);
-  World w = runner.run("sessile", o, [&](const World& now, const StepReport&) {
-    if (now.time < from) return;
-    const DropMeasure d = measure_sessile_drop(now.liquid, plane, norm(now.gravity));
-    mean.fit += degrees(d.fit_angle), mean.slope += degrees(d.slope_angle), mean.base += d.base_radius, mean.height += d.height, mean.volume += d.volume;
-    mean.speed += moments(now.liquid).speed;
-    count += 1;
-  }, [&](const World& now, const StepReport& step) {
-    if (now.time >= from) mean.force += step.surface_force.z, steps += 1;
-  });
-  mean.fit /= count, mean.slope /= count, mean.base /= count, mean.height /= count, mean.volume /= count, mean.speed /= count;
-  mean.force /= std::max(steps, 1.0);
-  if (kept) *kept = std::move(w);
-  return mean;
-}
-
 CaseResult sessile(CaseRunner& runner, bool gravity) {
   CaseResult r;
   const Real volume = 10e-9, across = runner.form(8.0, 10.0), units = runner.form(10.0, 14.0);
@@ -282,18 +217,14 @@ CaseResult sessile(CaseRunner& runner, bool gravity) {
     for (const Real angle : angles) {
       const Real start = std::clamp(angle + (tall ? 30.0 : -30.0), 20.0, 165.0);
       World w;
-      const Resting d = settle(runner, {gravity ? "gravity=[0, 0, -9.81]" : "gravity=[0, 0, 0]", set("solids[0].contact_angle", angle, "deg"),
+      const Resting d = settle(runner, "sessile", {gravity ? "gravity=[0, 0, -9.81]" : "gravity=[0, 0, 0]", set("solids[0].contact_angle", angle, "deg"),
                                         set("liquid.drops[0].cap_angle", start, "deg"), resolution(volume, across)}, units, &w);
       const Real gamma = w.liquid.kind.surface_tension;
       const SessileShape theory = sessile_shape(volume, radians(angle), gravity ? w.liquid.kind.density * 9.81 / gamma : 0);
       const std::string name = fmt::format("{:g} deg from {}: ", angle, tall ? "tall" : "flat");
       r.checks.push_back(within(name + "angle, fitted profile", d.fit, angle, "deg", 5, "project's goal"));
       r.checks.push_back(within(name + "angle, slope at the wall", d.slope, angle, "deg", 5, "project's goal"));
-      r.checks.push_back(near(name + "base radius", 1e3 * d.base, 1e3 * theory.base_radius, "mm", 0.05, "project's goal"));
-      r.checks.push_back(near(name + "height", 1e3 * d.height, 1e3 * theory.height, "mm", 0.05, "project's goal"));
-      r.checks.push_back(near(name + "volume", 1e9 * d.volume, 1e9 * volume, "uL", 0.005, "project's goal"));
-      r.checks.push_back(near(name + "net vertical surface force", 1e6 * d.force, -1e6 * 2 * pi * d.base * gamma * std::sin(radians(d.fit)), "uN", 0.05,
-                              "-2 pi a gamma sin(theta) of the shape shown"));
+      add_shape_checks(r, name, d, w, theory.base_radius, theory.height);
       r.checks.push_back(at_most(name + "capillary number of the residual motion", w.liquid.kind.viscosity * d.speed / gamma, 1e-3, "1", "project's goal"));
       shown.push_back(d.fit), wanted.push_back(angle);
       if (angle == 120 && !tall) runner.picture(r, w, runner.scene("sessile"), "The drop of 120 degrees");
@@ -315,7 +246,7 @@ CaseResult hysteresis(CaseRunner& runner) {
   const Real volume = 10e-9, across = runner.form(8.0, 10.0);
   const std::string thick = "liquid.kind={name: thick, density: 998.2 kg/m3, viscosity: 200 mPa s, surface_tension: 72.75 mN/m}";
   for (const auto& [start, wanted] : {std::pair{120.0, 90.0}, {75.0, 75.0}, {40.0, 60.0}}) {
-    const Resting d = settle(runner, {"gravity=[0, 0, 0]", "solids[0].contact_angle=90 deg", "solids[0].receding_angle=60 deg",
+    const Resting d = settle(runner, "sessile", {"gravity=[0, 0, 0]", "solids[0].contact_angle=90 deg", "solids[0].receding_angle=60 deg",
                                       thick, set("liquid.drops[0].cap_angle", start, "deg"), resolution(volume, across)}, runner.form(10.0, 14.0));
     const char* what = start > 90 ? "advances to" : start < 60 ? "recedes to" : "stays pinned at";
     r.checks.push_back(within(fmt::format("from {:g} deg the line {} (fitted profile)", start, what), d.fit, wanted, "deg", 5, "as for resting drops"));
@@ -418,6 +349,7 @@ CaseResult slot(CaseRunner& runner) {
   });
   r.checks.push_back(near("difference of the levels between and beside the plates", 1e3 * mean / count, 1e3 * wanted, "mm", 0.05, "project's goal"));
   r.charts.push_back(chart_of("Level between the plates over that beside them", "time", "ms", "height", "mm", time, {{"solver", difference, ""}, {"closed form", theory, ""}}));
+  r.notes.push_back("It is not friction: a slot that starts with 2.5 mm of water in place of 1 mm, and less beside it, comes down to 0.82 mm (decision 10).");
   runner.picture(r, w, scene, "Water between two plates");
   r.parameters = {{"plates", "1 mm apart, 60 degrees, 8 particles across"}, {"gravity", "40 m/s2"}};
   return r;

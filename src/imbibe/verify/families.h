@@ -18,6 +18,7 @@ void add_cloth(std::vector<Case>& cases);
 void add_coupled(std::vector<Case>& cases);
 void add_flows(std::vector<Case>& cases);
 void add_drops(std::vector<Case>& cases);
+void add_drops_on_solids(std::vector<Case>& cases);
 void add_pendant_drop(std::vector<Case>& cases);
 
 }  // namespace imbibe::verify

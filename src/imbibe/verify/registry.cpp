@@ -8,6 +8,7 @@ const std::vector<Case>& all_cases() {
     std::vector<Case> all;
     add_flows(all);
     add_drops(all);
+    add_drops_on_solids(all);
     add_pendant_drop(all);
     add_capillaries(all);
     add_yarn_transport(all);
