@@ -4,9 +4,9 @@
 //   boundary.h         sample_walls
 //   density.h          compute_density         colour, filling, their gradient, density error
 //   gradient_correction.h  correct_gradients   of the pressure's operator, for the disorder of the particles
-//   viscosity.h        apply_viscosity         with the numerical viscosity that contact lines ask for
-//   damping.h          damp_small_scales       (with surface tension)
 //   surface_tension.h  compute_surface         force of the surface and of the contact line, particle classes
+//   viscosity.h        apply_viscosity         with what contact lines ask for; before the surface's stage but for thick liquid with tension
+//   damping.h          damp_small_scales       (with surface tension)
 //   (kick)             velocity += dt (gravity + force)
 //   pressure.h         project_velocity        once for a displacement that undoes density errors, once for a velocity
 //                                              without compression

@@ -232,6 +232,13 @@ void report_density(const LiquidFields& f, PressureReport& report) {
 
 }  // namespace
 
+void pressure_response(LiquidFields& f, std::span<const float> pressure) {
+  const float stress = f.rest_density * f.lattice.stress;
+  parallel_for(f.count, [&](std::size_t i) { f.position[i].w = pressure[i] / (stress * std::max(1 - f.boundary.wall[i].w, 0.1f)); });
+  pressure_acceleration(f);
+  parallel_for(f.count, [&](std::size_t i) { f.position[i].w = 0; });
+}
+
 void uniform_pressure_response(LiquidFields& f) {
   parallel_for(f.count, [&](std::size_t i) { f.position[i].w = -0.5f / std::max(1 - f.boundary.wall[i].w, 0.1f); });
   pressure_acceleration(f);

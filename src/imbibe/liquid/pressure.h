@@ -70,6 +70,9 @@ struct PressureReport {
 PressureReport project_velocity(LiquidFields& f, const PressureParams& params, Real dt, Real relaxation,
                                 std::vector<float>& warm, SheetContacts* sheets = nullptr);
 
+// f.acceleration = a(k) of these pressures, Pa.
+void pressure_response(LiquidFields& f, std::span<const float> pressure);
+
 // f.acceleration = -a(k)/2 for the uniform pressure k = 1/(1 - lambda): what it does to each particle, 1/m. Away from walls, with
 // plain gradients, the colour gradient.
 void uniform_pressure_response(LiquidFields& f);

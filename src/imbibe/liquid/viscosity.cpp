@@ -76,6 +76,16 @@ void add_scaled(std::vector<Float4>& to, double scale, const std::vector<Float4>
   parallel_for(count, [&](std::size_t i) { to[i].x += s * from[i].x, to[i].y += s * from[i].y, to[i].z += s * from[i].z; });
 }
 
+// u += step expected.
+void add_expected(LiquidFields& f, float step, const std::vector<Float4>* expected) {
+  if (expected == nullptr) return;
+  parallel_for(f.count, [&](std::size_t i) {
+    Float4& u = f.velocity[i];
+    const Float4& a = (*expected)[i];
+    u = {u.x + step * a.x, u.y + step * a.y, u.z + step * a.z, u.w};
+  });
+}
+
 // (1 - dt A) u = u_old by conjugate gradients, from u_old.
 ViscosityReport solve_implicit(LiquidFields& f, const ViscosityParams& params, float dt) {
   const std::size_t n = f.count;
@@ -157,29 +167,8 @@ float share_of_sheet(const SheetWall& sheet, const SheetFoot& foot) {
   return 1 / (1 + most);
 }
 
-}  // namespace
-
-ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, const ViscosityAt& viscosity, Real dt,
-                                std::span<const Wall> walls, std::vector<Vec3>& impulse) {
-  ViscosityReport report;
-  if (!params.on || f.count == 0) return report;
-  const auto kinematic = [&](Real eta) { return static_cast<float>(eta / static_cast<Real>(f.rest_density)); };
-  const float nu = set_viscosity(f, kinematic(viscosity.bulk), kinematic(viscosity.walls));
-  if (nu <= 0) return report;
-  const auto step = static_cast<float>(dt);
-  const Real half_support = 0.5 * static_cast<Real>(f.neighbours.kernel.support);
-  const bool implicit = dt * static_cast<Real>(nu) > params.explicit_limit * half_support * half_support;
-  if (implicit) {
-    report = solve_implicit(f, params, step);
-  } else {
-    liquid_part(f, f.velocity, f.acceleration);
-    parallel_for(f.count, [&](std::size_t i) {
-      Float4 &u = f.velocity[i], &a = f.acceleration[i];
-      u = {u.x + step * a.x, u.y + step * a.y, u.z + step * a.z, u.w};
-    });
-  }
-  if (!params.wall_friction) return report;
-  // Friction: of the implicit form already in the velocity, here only booked; else, and on soft sheets, applied.
+// Friction at walls: of the implicit form already in the velocity, here only booked; else, and on soft sheets, applied.
+void add_friction(LiquidFields& f, std::span<const Wall> walls, float step, bool implicit, std::vector<Vec3>& impulse) {
   find_drag(f, walls, step);
   for (std::size_t i = 0; i < f.count; ++i) {
     const Float4 before = f.velocity[i];
@@ -197,8 +186,37 @@ ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, 
       f.boundary.give(i, s, static_cast<Real>(f.particle_mass) * Vec3(lost));
     }
   }
+}
+
+}  // namespace
+
+bool viscosity_is_implicit(const ViscosityParams& params, Real kinematic, Real support, Real dt) {
+  return params.on && dt * kinematic > params.explicit_limit * 0.25 * support * support;
+}
+
+ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, const ViscosityAt& viscosity, Real dt,
+                                std::span<const Wall> walls, std::vector<Vec3>& impulse, const std::vector<Float4>* expected) {
+  ViscosityReport report;
+  if (!params.on || f.count == 0) return report;
+  const auto kinematic = [&](Real eta) { return static_cast<float>(eta / static_cast<Real>(f.rest_density)); };
+  const float nu = set_viscosity(f, kinematic(viscosity.bulk), kinematic(viscosity.walls));
+  if (nu <= 0) return report;
+  const auto step = static_cast<float>(dt);
+  const bool implicit = viscosity_is_implicit(params, static_cast<Real>(nu), static_cast<Real>(f.neighbours.kernel.support), dt);
+  if (implicit) {
+    add_expected(f, step, expected);
+    report = solve_implicit(f, params, step);
+  } else {
+    liquid_part(f, f.velocity, f.acceleration);
+    parallel_for(f.count, [&](std::size_t i) {
+      Float4 &u = f.velocity[i], &a = f.acceleration[i];
+      u = {u.x + step * a.x, u.y + step * a.y, u.z + step * a.z, u.w};
+    });
+  }
+  if (params.wall_friction) add_friction(f, walls, step, implicit, impulse);
   // u_old + dt A u, which is u but for what the solver left: so the liquid loses exactly what its friction was booked as.
   if (implicit && report.converged) add_scaled(f.velocity, 1, f.residual, f.count);
+  if (implicit) add_expected(f, -step, expected);
   return report;
 }
 

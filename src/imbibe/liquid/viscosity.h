@@ -14,8 +14,12 @@
 // The pair force acts along the line of centres: linear and angular momentum are conserved to rounding. A free surface
 // is free of stress because nothing is there to sum over. Shear across it would need no w, but vanishes there.
 // Stability: explicit for dt <= explicit_limit (H/2)^2/nu; a longer step is made implicitly, (1 - dt A) u = u_old, by
-// conjugate gradients (A is symmetric and negative), so viscosity never bounds the step.
-// Tested in tests/liquid/viscosity_test.cpp: momentum, decay of a shear wave, implicit against explicit, wall shear.
+// conjugate gradients (A is symmetric and negative), so viscosity never bounds the step. Its A acts on the velocity at the end of
+// the step, so what the liquid expects of its other accelerations f goes in and comes out again, u = (1 - dt A)^-1 (u_old + dt f)
+// - dt f: a flow in which they and viscosity are in balance then has one speed for all steps (without f it is dt f too fast), and
+// liquid that they leave at rest is at rest. The explicit form is right without f but at walls, whose friction is always
+// implicit: a speed of dt f is left there, an error of second order in H.
+// Tested in tests/liquid/viscosity_test.cpp: momentum, decay of a shear wave, implicit against explicit, wall shear, balance.
 #pragma once
 
 #include "imbibe/core/parameter.h"
@@ -59,8 +63,12 @@ struct ViscosityAt {
 };
 
 // Changes f.velocity by viscosity over dt (w is work space); impulse[wall] gets what friction gave to each wall, N s. Soft
-// sheets are dragged explicitly, by no more than brings them to the liquid's velocity.
+// sheets are dragged explicitly, by no more than brings them to the liquid's velocity. expected: f, m/s2; null: none is known.
 ViscosityReport apply_viscosity(LiquidFields& f, const ViscosityParams& params, const ViscosityAt& viscosity, Real dt,
-                                std::span<const Wall> walls, std::vector<Vec3>& impulse);
+                                std::span<const Wall> walls, std::vector<Vec3>& impulse,
+                                const std::vector<Float4>* expected = nullptr);
+
+// Whether a step of dt is too long for the explicit form; kinematic: the largest viscosity, m2/s; support: H.
+bool viscosity_is_implicit(const ViscosityParams& params, Real kinematic, Real support, Real dt);
 
 }  // namespace imbibe
