@@ -35,7 +35,7 @@ TEST(CellCloth, AnEvenLayerFillsAllCellsAlikeUpToTheEdges) {
     const Real kg = 0.04 * cloth.grid->capacity_per_area / (a_side * a_side);
     for (int j = 0; j < a_side; ++j)
       for (int i = 0; i < a_side; ++i)
-        add_counted_parcel(*cloth.grid, cloth.contents, (i + 0.5) * 0.2 / a_side, (j + 0.5) * 0.2 / a_side, kg);
+        add_parcel(*cloth.grid, cloth.contents, (i + 0.5) * 0.2 / a_side, (j + 0.5) * 0.2 / a_side, kg);
     for (std::size_t c = 0; c < cloth.grid->cells(); ++c) EXPECT_NEAR(cell_saturation(*cloth.grid, cloth.contents, c), 1, 2e-3) << c;  // middles
   }
 }
@@ -69,7 +69,7 @@ TEST(CellCloth, ParcelsThatMoveTakeTheirMomentumAlong) {
   set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   for (int k = 0; k < 400; ++k) {
     const RandomCounter id{1, static_cast<std::uint64_t>(k), 0};
-    add_counted_parcel(*cloth.grid, cloth.contents, 0.08 + 0.04 * uniform(id, 0), 0.08 + 0.04 * uniform(id, 1), 1e-6);
+    add_parcel(*cloth.grid, cloth.contents, 0.08 + 0.04 * uniform(id, 0), 0.08 + 0.04 * uniform(id, 1), 1e-6);
   }
   cloth.params.resistance = 100, cloth.params.leak = false, cloth.params.drying = false;
   weigh(cloth);
@@ -90,9 +90,9 @@ TEST(CellCloth, WhatLeaksIsBornBelowTheLowestCellThatIsWet) {
   set_step(scratch.surface, sheet.position, sheet.position, sheet.triangles);
   cloth.params.absorption_factor = 0, cloth.params.resistance = 1e8;
   const Real capacity = cloth.grid->capacity(11 * 5 + 5);
-  for (int k = 0; k < 80; ++k) add_counted_parcel(*cloth.grid, cloth.contents, 0.1, 0.1, 0.05 * capacity);
+  for (int k = 0; k < 80; ++k) add_parcel(*cloth.grid, cloth.contents, 0.1, 0.1, 0.05 * capacity);
   for (int row = 0; row < 5; ++row)
-    for (int k = 0; k < 4; ++k) add_counted_parcel(*cloth.grid, cloth.contents, 0.1, 0.02 * row, 0.05 * capacity);
+    for (int k = 0; k < 4; ++k) add_parcel(*cloth.grid, cloth.contents, 0.1, 0.02 * row, 0.05 * capacity);
   Liquid water = liquid();
   water.particle_mass = 0.05 * capacity;
   CellExchangeReport report;

@@ -31,7 +31,7 @@ void pour(const CellGrid& grid, CellContents& c, int count, Real x, Real y, Real
   for (int k = 0; k < count; ++k) {
     const RandomCounter id{7, static_cast<std::uint64_t>(c.parcels()), 0};
     const Real r = radius * std::sqrt(uniform(id, 0)), angle = 2 * pi * uniform(id, 1);
-    add_counted_parcel(grid, c, x + r * std::cos(angle), y + r * std::sin(angle), parcel);
+    add_parcel(grid, c, x + r * std::cos(angle), y + r * std::sin(angle), parcel);
   }
 }
 
@@ -41,7 +41,7 @@ void fill(const CellGrid& grid, CellContents& c, Real share) {
   const Real kg = share * grid.upper_x * grid.upper_y * grid.capacity_per_area / (a_side * a_side);
   for (int j = 0; j < a_side; ++j)
     for (int i = 0; i < a_side; ++i)
-      add_counted_parcel(grid, c, (i + 0.5) * grid.upper_x / a_side, (j + 0.5) * grid.upper_y / a_side, kg);
+      add_parcel(grid, c, (i + 0.5) * grid.upper_x / a_side, (j + 0.5) * grid.upper_y / a_side, kg);
 }
 
 Real sum(const std::vector<Real>& values) {
@@ -169,7 +169,7 @@ TEST(CellFlow, GravityCarriesLiquidDownAtItsDriftSpeed) {
   CellParams params;
   params.absorption_factor = 0, params.residual_saturation = 0, params.resistance = 1000, params.leak = false;
   CellContents c = empty_contents(grid);
-  add_counted_parcel(grid, c, 0.1, 0.18, parcel);
+  add_parcel(grid, c, 0.1, 0.18, parcel);
   const std::vector<Real> lift = lift_of(grid, 1);
   for (int step = 0; step < 100; ++step) go(grid, params, lift, 0.1, c);
   // Starts from rest: one relaxation time 1/zeta is lost.
@@ -179,7 +179,7 @@ TEST(CellFlow, GravityCarriesLiquidDownAtItsDriftSpeed) {
 TEST(CellFlow, TheLeastWaterStaysWhereItIs) {
   const CellGrid grid = square(23);
   CellContents c = empty_contents(grid);
-  add_counted_parcel(grid, c, 0.1, 0.1, 0.04 * grid.capacity(grid.cell_at(0.1, 0.1)));
+  add_parcel(grid, c, 0.1, 0.1, 0.04 * grid.capacity(grid.cell_at(0.1, 0.1)));
   go(grid, CellParams{}, lift_of(grid, 1), 100, c);
   EXPECT_EQ(c.parcel_place[0], (Vec3{0.1, 0.1, 0}));
 }
@@ -237,7 +237,7 @@ TEST(CellFlow, AnOverfullPlaceLeaksItsExcessAtTheLowestPointThatTheLiquidReaches
   const auto column = static_cast<Index>(grid.columns);
   const Real capacity = grid.capacity(top);
   const auto put = [&](Index cell, Real share) {
-    for (int k = 0; k < 20; ++k) add_counted_parcel(grid, c, grid.centre(cell).x, grid.centre(cell).y, share * capacity / 20);
+    for (int k = 0; k < 20; ++k) add_parcel(grid, c, grid.centre(cell).x, grid.centre(cell).y, share * capacity / 20);
   };
   put(top, 2.5);
   for (Index k = 1; k <= 6; ++k) put(top - k * column, 0.3);  // a wet trail downwards

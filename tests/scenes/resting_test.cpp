@@ -52,7 +52,7 @@ TEST(Resting, AClothOfOverFullCellsComesToRest) {
   for (std::size_t c = 0; c < cloth.grid->cells(); ++c) {
     const Vec3 at = cloth.grid->centre(c);
     if (norm(at - Vec3{0.075, 0.075, 0}) > 0.06) continue;
-    for (int k = 0; k < 20; ++k) add_counted_parcel(*cloth.grid, cloth.contents, at.x, at.y, 0.08 * cloth.grid->capacity(c));
+    for (int k = 0; k < 20; ++k) add_parcel(*cloth.grid, cloth.contents, at.x, at.y, 0.08 * cloth.grid->capacity(c));
   }
   weigh(cloth);
   world.ledger.initial_kg = cell_kg(cloth);

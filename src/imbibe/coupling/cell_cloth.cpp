@@ -144,7 +144,7 @@ void absorb(CellCloth& cloth, std::span<const std::uint8_t> held, const std::vec
             const Vec3& velocity) {
   const Real part = kg / static_cast<Real>(footprint.size());
   for (const Vec3& m : footprint) {
-    const CellStencil where = add_counted_parcel(*cloth.grid, cloth.contents, m.x, m.y, part);
+    const CellStencil where = add_parcel(*cloth.grid, cloth.contents, m.x, m.y, part);
     for (std::size_t k = 0; k < where.count; ++k) {
       const Index node = (*cloth.node_of_cell)[where.cell[k]];
       merge_into_node(cloth.soft, held, node, part * where.weight[k], velocity);
@@ -302,7 +302,7 @@ void draw_back(CellCloth& cloth, std::span<const std::uint8_t> held) {
     const Real room = grid.capacity(c) - contents.content_kg[c], kg = std::min(room, cloth.waiting_kg[c]);
     if (!(kg > 0) || (kg < cloth.waiting_kg[c] && kg < least_share * grid.capacity(c))) continue;
     const Vec3 at = grid.centre(c);
-    const CellStencil where = add_counted_parcel(grid, contents, at.x, at.y, kg);
+    const CellStencil where = add_parcel(grid, contents, at.x, at.y, kg);
     for (std::size_t k = 0; k < where.count; ++k) carry(cloth, held, c, where.cell[k], kg * where.weight[k]);
     cloth.waiting_kg[c] -= kg;
   }

@@ -232,9 +232,10 @@ void count_contents(const CellGrid& grid, CellContents& c) {
   for (std::size_t p = 0; p < c.parcels(); ++p) count(grid, c.parcel_place[p], c.parcel_kg[p], c.content_kg);
 }
 
-CellStencil add_counted_parcel(const CellGrid& grid, CellContents& contents, Real x, Real y, Real kg) {
-  add_parcel(grid, contents, x, y, 0);
-  contents.parcel_kg.back() = kg;
+CellStencil add_parcel(const CellGrid& grid, CellContents& contents, Real x, Real y, Real kg) {
+  contents.parcel_place.push_back(grid.nearest_place(x, y));
+  contents.parcel_velocity.push_back({});
+  contents.parcel_kg.push_back(kg);
   const CellStencil s = stencil_at(grid, contents.parcel_place.back());
   for (std::size_t k = 0; k < s.count; ++k) contents.content_kg[s.cell[k]] += kg * s.weight[k];
   return s;

@@ -46,8 +46,8 @@ CellStencil stencil_at(const CellGrid& grid, const Vec3& place);
 // Sets content_kg from the parcels.
 void count_contents(const CellGrid& grid, CellContents& contents);
 
-// One more parcel, counted. Returns what it counts for.
-CellStencil add_counted_parcel(const CellGrid& grid, CellContents& contents, Real x, Real y, Real kg);
+// One more parcel, at the nearest place of the sheet. Returns what it counts for.
+CellStencil add_parcel(const CellGrid& grid, CellContents& contents, Real x, Real y, Real kg);
 
 // Work space; not state.
 struct CellFlowScratch {

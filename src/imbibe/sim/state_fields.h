@@ -132,7 +132,6 @@ void visit_state(Visitor& v, AnyWorld& world) {
     v.array("parcel_place", cloth.contents.parcel_place);
     v.array("parcel_velocity", cloth.contents.parcel_velocity);
     v.array("content_kg", cloth.contents.content_kg);
-    v.array("leak_due_kg", cloth.contents.leak_due_kg);
     v.array("waiting_kg", cloth.waiting_kg);
     v.value("absorbed_particles", cloth.absorbed_particles);
     v.value("released_particles", cloth.released_particles);

@@ -1,26 +1,15 @@
-// Seed B's wetting: a cloth whose nodes are cells that hold parcels of liquid.
+// Seed B's wetting: a cloth whose nodes are cells that hold parcels of liquid. The cells and what they hold; how the
+// parcels move, leak and dry is coupling/cell_flow.h.
 //
-//   force      a = K sum_j (s_i - s_j) d_j/|d_j|^2 / M + g_t - zeta v,    d_j = x_j - x,  s = content/capacity
-//   position   x' = x + phi1 v + phi2 (K... + g_t),  phi1 = (1 - e^(-zeta dt))/zeta,  phi2 = (dt - phi1)/zeta   (exact)
-//   leak       kg due in dt = max(0, excess (1 - e^(-dt/tau)) - what motion carried off),  excess = content - capacity
-//   drying     kg in dt = E A dt from wet cells, falling as s/s_c below the critical saturation s_c
+//   s = content/capacity,   capacity = capacity_ratio x dry mass (or kg/m2 given) x area of the cell
 //
-// x place of the parcel, x_j centre of one of the 8 neighbouring cells, m in the sheet's material coordinates; a m/s2;
-// K absorption factor, m2/s2 (suction over density: 0.5 kPa in water is 0.5); zeta resistance 1/s (viscosity x voids over
-// permeability x density: 1e-10 m2 is 1e4); g_t gravity along the cloth, m/s2; tau leak time, s; E kg/(m2 s); A m2.
-// M = sum_j (d_j/|d_j|)^2 along each axis from the cell's centre (4 for square cells): with it the force of an even slope of
-// s is -K grad s whatever the size of the cells, so K/zeta is a diffusivity and finer cells change nothing but detail.
-// A parcel changes cell with its place and never leaves the sheet: it stops at the edge. Below the residual saturation
-// the fibres hold what is there. What is due to leak leaves as whole parcels, from the cell that is over-full, and
-// comes out at the lowest cell that wet cells connect it with.
+// K absorption factor, m2/s2 (suction over density: 0.5 kPa in water is 0.5); zeta resistance, 1/s (viscosity x voids over
+// permeability x density: 1e-10 m2 is 1e4); K/zeta is a diffusivity, m2/s, whatever the size of the cells; tau leak time, s.
 // Source: "Wet cloth" (seed B) sections 5.3 and 5.6; Huber et al. 2D automaton behind it. Resistance, residual and drying
 // are ours: the report names them as missing. Assumes motion along the sheet is slow: parcels carry the sheet's momentum.
-// Valid for any zeta >= 0; sub-steps keep a parcel within a quarter of a cell and the diffusion stable (0.125 h^2/D).
-// Mass: parcels only move, shrink by drying or leave by leaking; the contents are their sum.
 // Tested in tests/wetting/cells_test.cpp.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -89,6 +78,7 @@ struct CellGrid {
   Real capacity_per_area = 0;         // kg/m2
   std::size_t cells() const { return area.size(); }
   Index cell_at(Real x, Real y) const;
+  Vec3 nearest_place(Real x, Real y) const;  // of the sheet; beside a ragged edge the centre of the nearest cell
   Real capacity(std::size_t cell) const { return capacity_per_area * area[cell]; }
   Vec3 centre(std::size_t cell) const;  // z = 0
 };
@@ -101,46 +91,14 @@ struct CellContents {
   std::vector<Real> parcel_kg;
   std::vector<Vec3> parcel_place;     // m, material, z = 0
   std::vector<Vec3> parcel_velocity;  // m/s, material
-  std::vector<Real> content_kg;       // per cell: the sum of its parcels
-  std::vector<Real> leak_due_kg;      // per cell: owed to the outside, less than a parcel
+  std::vector<Real> content_kg;       // per cell: the sum of its shares in parcels
   std::size_t parcels() const { return parcel_kg.size(); }
 };
 
 CellContents empty_contents(const CellGrid& grid);
-void add_parcel(const CellGrid& grid, CellContents& contents, Real x, Real y, Real kg);
 Real total_kg(const CellContents& contents);
 inline Real cell_saturation(const CellGrid& grid, const CellContents& contents, std::size_t cell) {
   return grid.area[cell] > 0 ? contents.content_kg[cell] / grid.capacity(cell) : 0;
 }
-
-// The absorption force on a parcel at (x, y) in `cell`, m/s2: K grad-like sum over the 8 neighbours.
-Vec3 absorption_force(const CellGrid& grid, std::span<const Real> saturation, Real factor, Index cell, Real x, Real y);
-
-// What the cells meet in a step, from the sheet's shape and the air.
-struct CellSurroundings {
-  std::span<const Vec3> gravity;   // m/s2 per cell, along the sheet's material directions; empty: none
-  std::span<const Real> height;    // m per cell; empty: all alike
-  Real evaporation = 0;            // kg/(m2 s) of sheet, both faces together; <= 0: none
-};
-
-struct CellLeak {
-  Index from = 0, at = 0;          // over-full cell, cell where it comes out
-  Real kg = 0;
-};
-// A parcel that changed cell: its mass leaves the one and joins the other.
-struct CellMove {
-  Index from = 0, to = 0;
-  Real kg = 0;
-};
-struct CellStepReport {
-  std::vector<CellMove> moves;     // in the order in which they happened
-  Real evaporated_kg = 0;
-  int sub_steps = 0;
-  std::vector<CellLeak> leaks;     // whole parcels that have left the contents
-};
-
-// parcel_kg: a parcel dried below a thousandth of it goes to the air whole.
-CellStepReport step_cells(const CellGrid& grid, const CellParams& params, CellContents& contents,
-                          const CellSurroundings& around, Real parcel_kg, Real dt);
 
 }  // namespace imbibe
