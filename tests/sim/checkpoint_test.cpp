@@ -226,6 +226,13 @@ TEST(Checkpoint, of_another_format_version_or_kind_of_file_is_refused_by_name) {
   EXPECT_THROW(read_checkpoint(folder / "none.h5", read), InputError);
 }
 
+// A seed of an older format is refused at its first line: the search would never come to the rest.
+TEST(Checkpoint, the_seed_of_the_fuzz_target_has_the_present_format) {
+  const std::string seed = text_of(IMBIBE_SOURCE_DIR "/fuzz/corpus/checkpoint/file");
+  EXPECT_EQ(seed.find(fmt::format("fimbibe checkpoint\nversion {}\n", checkpoint_version)), 0u)
+      << "make it anew: an `f`, then the file that fuzz/checkpoint_fuzz.cpp writes for the input `c`";
+}
+
 TEST(Checkpoint, of_another_scene_is_refused_with_every_difference) {
   const TemporaryFolder folder;
   write_checkpoint(folder / "c.h5", filled_world());

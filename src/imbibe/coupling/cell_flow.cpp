@@ -19,7 +19,7 @@ struct Axis {
 
 Axis axis_at(Real x, Real first, Real pitch, int cells, bool cut_at_centres) {
   const Real place = (x - first) / pitch;
-  const int middle = std::clamp(static_cast<int>(std::floor(place + 0.5)), 0, cells - 1);
+  const int middle = static_cast<int>(std::clamp(std::floor(place + 0.5), Real{0}, static_cast<Real>(cells - 1)));
   const Real u = place - middle, below = 0.5 - u, above = 0.5 + u;
   Axis a{{middle - 1, middle, middle + 1},
          {0.5 * below * below, 0.75 - u * u, 0.5 * above * above},
