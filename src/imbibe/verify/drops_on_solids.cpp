@@ -62,6 +62,7 @@ CaseResult drops_at_rest(CaseRunner& runner, const std::string& scene, const std
       const std::string name = fmt::format("{:g} deg, {:g} particles per radius: ", angle, across);
       r.checks.push_back(within(name + "angle, fitted profile", d.fit, angle, "deg", 5, "as on a plane"));
       add_shape_checks(r, name, d, w, wanted.base_radius, wanted.height);
+      r.checks.push_back(at_most(name + "capillary number of the residual motion", w.liquid.kind.viscosity * d.speed / w.liquid.kind.surface_tension, 1e-3, "1", "as on a plane, where the liquid is water"));
       fastest = std::max(fastest, d.speed);
       r.checks.push_back(near(name + "liquid on the solid", 1e9 * w.liquid.mass() / w.liquid.kind.density, 1e9 * volume, "uL", 1e-3, "nothing is taken up; the drop's volume is a whole number of particles"));
       if (angle == angles.back()) runner.picture(r, w, runner.scene(scene, o), fmt::format("The drop of {:g} degrees", angle));
