@@ -92,8 +92,9 @@ struct Carry {
     const void* old = find(name);
     if (!old) return;
     const auto& values = *static_cast<const std::vector<T>*>(old);
-    // As many as there happen to be: particles, and the parcels of a cloth of cells.
-    const bool any_number = path == "liquid/" || std::string_view(name).starts_with("parcel_");
+    // As many as there happen to be: particles, the parcels of a cloth of cells, and where a sheet is watched for rest (none at first).
+    const std::string_view field = name;
+    const bool any_number = path == "liquid/" || field.starts_with("parcel_") || field == "calm_place";
     if (!any_number && values.size() != x.size()) misfits.push_back(path + name);
     x = values;
   }
