@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "imbibe/core/error.h"
 #include "imbibe/core/output_file.h"
@@ -90,6 +91,7 @@ World filled_world(std::size_t particles = 1000) {
   world.textiles[1].contents.reached_saturation = reached;
   world.liquid.particle_mass = mass;
   world.sources[0].carried = 1e-13;  // m3, less than a particle
+  world.air.temperature = 301;
   return world;
 }
 
@@ -167,6 +169,83 @@ TEST(Checkpoint, gives_every_bit_of_the_state_back) {
                         world.liquid.particles.size() * sizeof(Float4)),
             0);
   EXPECT_EQ(read.textiles[0].name, "swatch/upper");
+}
+
+// Puts NaN into a field of real numbers, by its number.
+class NanVisitor {
+ public:
+  explicit NanVisitor(int target) : target_(target) {}
+  void group(const std::string& name) { group_ = name; }
+  template <class T>
+  void value(const char* name, T& x) {
+    if (counter_++ == target_) put(name, x);
+  }
+  template <class T>
+  void array(const char* name, std::vector<T>& x) {
+    if (counter_++ == target_ && !x.empty()) put(name, x.back());
+  }
+  int fields() const { return counter_; }
+  std::string changed;
+
+ private:
+  template <class T>
+  void put(const char* name, T& x) {
+    if constexpr (std::is_floating_point_v<T>) x = std::numeric_limits<T>::quiet_NaN(), changed = group_ + "/" + name;
+    else if constexpr (requires { x.y; }) x.y = std::numeric_limits<Real>::quiet_NaN(), changed = group_ + "/" + name;
+  }
+  std::string group_;
+  int target_, counter_ = 0;
+};
+
+TEST(Checkpoint, with_no_number_in_any_field_is_refused_by_that_field) {
+  const TemporaryFolder folder;
+  const World world = filled_world(10);
+  NanVisitor none(-1);
+  World counted = world;
+  visit_state(none, counted);
+  int real_fields = 0;
+  for (int field = 0; field < none.fields(); ++field) {
+    World changed = world;
+    NanVisitor visitor(field);
+    visit_state(visitor, changed);
+    if (visitor.changed.empty()) continue;
+    ++real_fields;
+    write_checkpoint(folder / "c.h5", changed);
+    World read = built_world();
+    try {
+      read_checkpoint(folder / "c.h5", read);
+      ADD_FAILURE() << visitor.changed << " was NaN and is read";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(visitor.changed == "liquid/particle_mass" ? "another scene" : visitor.changed),
+                std::string::npos)
+          << visitor.changed << ": " << error.what();
+    }
+  }
+  EXPECT_GT(real_fields, 40);
+}
+
+TEST(Checkpoint, with_numbers_that_no_run_comes_to_is_refused) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& words, const auto& change) {
+    World world = filled_world(10);
+    change(world);
+    write_checkpoint(folder / "c.h5", world);
+    World read = built_world();
+    try {
+      read_checkpoint(folder / "c.h5", read);
+      ADD_FAILURE() << "read: " << words;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  refused("out of reach", [](World& w) { w.liquid.particles.position[3].x = 1e6f; });
+  refused("too fast", [](World& w) { w.liquid.particles.velocity[3].z = -3e4f; });
+  refused("owes more", [](World& w) { w.liquid.particles.owed_kg[3] = 1e6; });
+  refused("waits on a face", [](World& w) { w.textiles[1].exchange.waiting_kg[3] = -1e6; });
+  refused("humidity", [](World& w) { w.air.humidity = 2; });
+  refused("degC", [](World& w) { w.air.temperature = 20; });
+  refused("gravity", [](World& w) { w.gravity = {0, 0, -1e4}; });
+  refused("time", [](World& w) { w.time = -1; });
 }
 
 TEST(Checkpoint, of_a_world_without_liquid_and_textiles_is_read_back) {

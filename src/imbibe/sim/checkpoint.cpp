@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -16,9 +15,9 @@
 #include "imbibe/core/error.h"
 #include "imbibe/core/output_file.h"
 #include "imbibe/core/random.h"
+#include "imbibe/sim/state_check.h"
 #include "imbibe/sim/state_fields.h"
 #include "imbibe/sim/state_hash.h"
-#include "imbibe/wetting/wetting_step.h"
 
 namespace imbibe {
 
@@ -274,46 +273,6 @@ std::string_view verified_image(const fs::path& path, const std::string& content
   return image;
 }
 
-// What does not fit between the state that was read and the world the scene builds, or can be no state at all.
-std::vector<std::string> mismatches(const World& read, const World& built) {
-  std::vector<std::string> problems;
-  const auto same = [&](const std::string& what, auto stored, auto wanted) {
-    if (stored == wanted) return;
-    problems.push_back(fmt::format("is of another scene: {} is {}, the scene has {}", what, stored, wanted));
-  };
-  same("particle mass in kg", read.liquid.particle_mass, built.liquid.particle_mass);
-  const Particles& p = read.liquid.particles;
-  for (const std::size_t size : {p.velocity.size(), p.id.size(), p.kind.size(), p.density.size(), p.pressure.size(),
-                                 p.warm_pressure.size(), p.warm_divergence.size(), p.owed_kg.size()}) {
-    if (size != p.size()) problems.push_back("particle arrays differ in length");
-  }
-  // The network would be stepped over all of it.
-  if (!read.textiles.empty() && !(read.pace.since_wetting >= 0 && read.pace.since_wetting <= longest_wetting_step)) {
-    problems.push_back(fmt::format("textiles were last stepped {} s ago; no run lets more than {} s pass",
-                                   read.pace.since_wetting, longest_wetting_step));
-  }
-  const Real particle_volume = built.liquid.particle_mass / built.liquid.kind.density;
-  for (std::size_t i = 0; i < read.sources.size(); ++i) {
-    const Source& s = read.sources[i];
-    if (s.emitted < 0) problems.push_back(fmt::format("source {} has emitted {} drops", i, s.emitted));
-    // What rounding to whole particles leaves over; a change of the density while it ran may have stretched it.
-    if (!(std::abs(s.carried) <= 2 * particle_volume)) {
-      problems.push_back(fmt::format("source {} owes {} m3, more than a particle's volume", i, s.carried));
-    }
-  }
-  for (std::size_t i = 0; i < read.textiles.size(); ++i) {
-    const Textile &t = read.textiles[i], &b = built.textiles[i];
-    const std::string name = "textile '" + b.name + "': number of ";
-    const std::size_t nodes = b.contents.liquid_kg.size();
-    same(name + "segments", t.contents.sorbed_kg.size(), b.contents.sorbed_kg.size());
-    same(name + "nodes", t.contents.liquid_kg.size(), nodes);
-    same(name + "fibre shells", t.contents.shell_regain.size(), b.contents.shell_regain.size());
-    same(name + "hysteresis values", t.contents.reached_saturation.size(), b.contents.reached_saturation.size());
-    if (!t.exchange.waiting_kg.empty()) same(name + "exchange values", t.exchange.waiting_kg.size(), nodes);
-  }
-  return problems;
-}
-
 }  // namespace
 
 void write_checkpoint(const fs::path& path, const World& world) {
@@ -355,7 +314,7 @@ void read_checkpoint(const fs::path& path, World& built) {
   ReadVisitor visitor(file);
   visit_state(visitor, read);
   if (!visitor.problems().empty()) refuse(path, visitor.problems());
-  problems = mismatches(read, built);
+  problems = unsound_state(read, built);
   if (!problems.empty()) refuse(path, problems);
   if (state_hash(read) != read_attribute(file, "state_hash")) {
     refuse(path, {"checkpoint is damaged: the state read is not the state written"});
