@@ -1,6 +1,8 @@
 // What seed B reports of its cloth, as tests on a small one: its figures 5 to 8, and the shape after drying.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "imbibe/liquid/momentum.h"
 #include "imbibe/scene/builder.h"
 #include "imbibe/sim/measures.h"
@@ -152,40 +154,51 @@ TEST(SeedB, MomentumOfLiquidClothAndPinsIsKeptEachStep) {
   }
 }
 
-// J: motion of liquid and cloth, what the cloth stores, and height above the origin.
-Real energy_of(const World& world, ClothScratch& scratch) {
-  const SoftSheet& soft = world.cell_cloths[0].soft;
-  Real energy = kinetic_energy(soft.sheet) + elastic_energy(soft.sheet, soft.cloth, scratch);
-  for (std::size_t n = 0; n < soft.sheet.size(); ++n)
-    energy -= soft.sheet.mass(n) * dot(world.gravity, soft.sheet.position[n]);
-  for (std::size_t i = 0; i < world.liquid.particles.size(); ++i) {
-    const Float4 &x = world.liquid.particles.position[i], &v = world.liquid.particles.velocity[i];
-    energy += world.liquid.particle_mass *
-              (0.5 * squared_norm(Vec3{v.x, v.y, v.z}) - dot(world.gravity, Vec3{x.x, x.y, x.z}));
+// J: motion of liquid and cloth, what the cloth stores, and height above the origin. Particles that have left the cloth downwards
+// keep what they had there: they fall freely, and metres below their places are rounded by a thousandth of what they fall.
+class EnergyBook {
+ public:
+  Real of(const World& world) {
+    constexpr Real left_below = -1;  // m, well below the cloth
+    const SoftSheet& soft = world.cell_cloths[0].soft;
+    Real energy = kinetic_energy(soft.sheet) + elastic_energy(soft.sheet, soft.cloth, scratch_);
+    for (std::size_t n = 0; n < soft.sheet.size(); ++n)
+      energy -= soft.sheet.mass(n) * dot(world.gravity, soft.sheet.position[n]);
+    const Particles& p = world.liquid.particles;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const Float4 &x = p.position[i], &v = p.velocity[i];
+      Real own = world.liquid.particle_mass *
+                 (0.5 * squared_norm(Vec3{v.x, v.y, v.z}) - dot(world.gravity, Vec3{x.x, x.y, x.z}));
+      if (x.z < left_below) own = gone_.try_emplace(p.id[i], own).first->second;
+      energy += own;
+    }
+    return energy;
   }
-  return energy;
-}
+
+ private:
+  ClothScratch scratch_;
+  std::map<std::uint64_t, Real> gone_;
+};
 
 // What a run without absorption, drag and surface tension loses in a second after its jet ended, and the most that its
 // energy stands above its lowest so far. Pins stand; the last particle is born at 0.75 s.
 struct Energy {
   Real lost = 0, growth = 0;
 };
-Energy energy_without_losses(const std::string& model, const std::string& strain_error) {
+Energy energy_without_losses(const std::string& model, int seed) {
   World world = small_scene({"textiles[0].wetting.cells.absorb=false", "textiles[0].sheet.soft.cloth.air.density=0",
-                             "textiles[0].sheet.soft.cloth.model=" + model,
-                             "textiles[0].sheet.soft.cloth.strain_error=" + strain_error,
+                             "textiles[0].sheet.soft.cloth.model=" + model, "seed=" + std::to_string(seed),
                              "liquid.solver.surface_tension=false", "liquid.pipes[0].stop=0.75",
                              "domain={lower: [-4 m, -4 m, -9 m], upper: [4 m, 4 m, 4 m]}"});  // none leaves
   StepScratch scratch;
-  ClothScratch elastic;
+  EnergyBook book;
   while (world.time < 0.76) step(world, {.until = 0.76, .rest_allowed = false}, scratch);
-  const Real start = energy_of(world, elastic);
+  const Real start = book.of(world);
   Real lowest = start, last = start;
   Energy energy;
   while (world.time < 1.76) {
     step(world, {.until = 1.76, .rest_allowed = false}, scratch);
-    last = energy_of(world, elastic);
+    last = book.of(world);
     lowest = std::min(lowest, last), energy.growth = std::max(energy.growth, last - lowest);
   }
   EXPECT_EQ(world.ledger.left_kg, 0);
@@ -194,13 +207,15 @@ Energy energy_without_losses(const std::string& model, const std::string& strain
 }
 
 TEST(SeedB, WithoutAbsorptionAndDragEnergyNeverGrows) {
-  // Of what was lost. Provot: what the springs' solver leaves of its strains. Xpbd: stiff threads are stretched for a step by
-  // the liquid's push, which they take back in the next (decision 0007).
-  for (const auto& [model, most] : {std::pair{"provot", 4e-3}, std::pair{"xpbd", 1e-2}}) {
-    const Energy energy = energy_without_losses(model, "2e-3");
-    RecordProperty(model, std::to_string(energy.growth / energy.lost));
-    EXPECT_GT(energy.lost, 1e-3);
-    EXPECT_LT(energy.growth, most * energy.lost) << model;
+  // Of what was lost. Springs: what their solver leaves of their strains over some tens of steps near the lowest point. Threads:
+  // rounding and the turn of their directions in a step (decision 0007).
+  for (const auto& [model, most] : {std::pair{"provot", 3e-3}, std::pair{"xpbd", 5e-4}}) {
+    for (int seed = 1; seed <= 4; ++seed) {
+      const Energy energy = energy_without_losses(model, seed);
+      RecordProperty(std::string(model) + std::to_string(seed), std::to_string(energy.growth / energy.lost));
+      EXPECT_GT(energy.lost, 1e-3);
+      EXPECT_LT(energy.growth, most * energy.lost) << model << ", seed " << seed;
+    }
   }
 }
 

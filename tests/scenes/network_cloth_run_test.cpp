@@ -40,7 +40,7 @@ textiles:
         cloth: {air: {density: 0}, contact: {self: false}}
         pins: [{corner: bottom_left}, {corner: bottom_right}, {corner: top_left}, {corner: top_right}]
     wetting: {network: {evaporation: false}}
-domain: {lower: [-20 mm, -20 mm, -40 mm], upper: [20 mm, 20 mm, 20 mm]}
+domain: {lower: [-40 mm, -40 mm, -80 mm], upper: [40 mm, 40 mm, 40 mm]}
 )";
   const auto file = test::scenes_folder() / "small_hammock.yaml";
   return test::build(read_scene_text(text, file.string(), overrides), file);

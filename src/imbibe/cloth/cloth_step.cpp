@@ -6,6 +6,7 @@
 
 #include "imbibe/cloth/air.h"
 #include "imbibe/cloth/cloth_work.h"
+#include "imbibe/cloth/thread_answer.h"
 #include "imbibe/cloth/solid_contact.h"
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
@@ -338,7 +339,7 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
 }
 
 PushReport push_cloth(Sheet& sheet, const ClothParams& params, std::span<const Real> inverse_mass,
-                      std::span<const Vec3> impulse, Real dt, ClothScratch& scratch) {
+                      std::span<const Vec3> impulse, Real dt, ClothScratch& scratch, ThreadAnswer* threads) {
   IMBIBE_ASSERT(impulse.size() == sheet.size() && inverse_mass.size() == sheet.size());
   PushReport report;
   ClothScratch::Work& work = scratch.work();
@@ -349,6 +350,7 @@ PushReport push_cloth(Sheet& sheet, const ClothParams& params, std::span<const R
     work.push[i] = inverse_mass[i] * impulse[i];
     if (inverse_mass[i] == 0) report.pin_impulse -= impulse[i];
   }
+  if (threads != nullptr) threads->resist(work.push, work.held);
   const NodeMotion nodes{sheet.position.data(), work.push.data(), inverse_mass.data(), work.held.data()};
   SelfContact& self = work.self;
   if (params.contact.self) {

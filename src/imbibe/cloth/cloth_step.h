@@ -157,14 +157,16 @@ ClothStepReport step_cloth(Sheet& sheet, const ClothParams& params, const ClothL
 
 // Impulses (N s per node) of something that went along with the sheet during its last step of dt: they change velocity AND
 // place, v += J/m, x += dt J/m. Layers that would cross on that way stop each other, by equal and opposite impulses: a sheet
-// that starts without crossings has none after it. inverse_mass: 1/kg per node, 0 where a support holds it.
+// that starts without crossings has none after it. inverse_mass: 1/kg per node, 0 where a support holds it. threads, begun for the
+// nodes with impulses: J/m is what they leave of it.
+class ThreadAnswer;
 struct PushReport {
   Vec3 pin_impulse{};           // N s on the sheet, by supports
   std::size_t swept_hits = 0;   // crossings prevented
   std::size_t unresolved_crossings = 0;
 };
 PushReport push_cloth(Sheet& sheet, const ClothParams& params, std::span<const Real> inverse_mass,
-                      std::span<const Vec3> impulse, Real dt, ClothScratch& scratch);
+                      std::span<const Vec3> impulse, Real dt, ClothScratch& scratch, ThreadAnswer* threads = nullptr);
 
 // Joules stored in the threads of the sheet as it is.
 Real elastic_energy(const Sheet& sheet, const ClothParams& params, ClothScratch& scratch);

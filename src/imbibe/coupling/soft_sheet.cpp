@@ -209,6 +209,19 @@ std::size_t throw_back(SoftSheet& soft, SoftSheetScratch& scratch, Liquid& liqui
   return scratch.hits.size();
 }
 
+bool threads_resist(const SoftSheet& soft) {
+  return soft.moves() && soft.cloth.model == ClothModel::xpbd && soft.sheet.is_grid();
+}
+
+void ThreadResistance::set(const SoftSheet& soft, std::span<const Real> inverse_mass, ClothScratch& scratch) {
+  soft_ = &soft, inverse_mass_ = inverse_mass, scratch_ = &scratch;
+  begin({}, 0);
+}
+
+void ThreadResistance::begin(std::span<const Index> pushed, Real dt) {
+  threads.begin(soft_->sheet, soft_->cloth, inverse_mass_, pushed, dt, *scratch_);
+}
+
 Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
   const Sheet& sheet = soft.sheet;
   find_held(soft, scratch.held);
@@ -217,6 +230,8 @@ Wall sheet_as_wall(const SoftSheet& soft, SoftSheetScratch& scratch) {
   scratch.wall.surface = &scratch.surface;
   scratch.wall.velocity = scratch.wall_velocity;
   scratch.wall.inverse_mass = scratch.inverse_mass;
+  scratch.resistance.set(soft, scratch.inverse_mass, scratch.cloth);
+  scratch.wall.resistance = threads_resist(soft) ? &scratch.resistance : nullptr;
   scratch.wall.half_thickness = 0.5 * soft.cloth.hand.thickness;
   scratch.wall.impulse.assign(sheet.size(), Vec3{});
   scratch.wall.pressing = 0;
@@ -238,7 +253,8 @@ void take_wall_impulse(SoftSheet& soft, SoftSheetScratch& scratch, const Vec3& g
   if (!soft.moves()) soft.support_impulse -= sum;
   else if (sum != Vec3{})
     soft.support_impulse +=
-        push_cloth(soft.sheet, soft.cloth, scratch.inverse_mass, impulse, dt, scratch.cloth).pin_impulse;
+        push_cloth(soft.sheet, soft.cloth, scratch.inverse_mass, impulse, dt, scratch.cloth, &scratch.resistance.threads)
+            .pin_impulse;
   judge_load(soft, gravity, dt);
 }
 

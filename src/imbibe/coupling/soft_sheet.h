@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "imbibe/cloth/cloth_step.h"
+#include "imbibe/cloth/thread_answer.h"
 #include "imbibe/core/random.h"
 #include "imbibe/coupling/cell_flow.h"
 #include "imbibe/geometry/moving_mesh.h"
@@ -53,6 +54,24 @@ struct SheetHit {
   MovingCrossing crossing;
 };
 
+// The threads of a soft sheet as the liquid's solver meets them.
+class ThreadResistance : public SheetResistance {
+ public:
+  void set(const SoftSheet& soft, std::span<const Real> inverse_mass, ClothScratch& scratch);
+  void begin(std::span<const Index> pushed, Real dt) override;
+  std::span<const Index> nodes() const override { return threads.nodes(); }
+  void resist(std::span<Vec3> velocity) override { threads.resist(velocity); }
+  ThreadAnswer threads;
+
+ private:
+  const SoftSheet* soft_ = nullptr;
+  std::span<const Real> inverse_mass_;
+  ClothScratch* scratch_ = nullptr;
+};
+
+// Whether a push of the liquid is resisted by more than the masses of nodes.
+bool threads_resist(const SoftSheet& soft);
+
 // Work space and caches of one sheet; not state.
 struct SoftSheetScratch {
   ClothScratch cloth;
@@ -61,6 +80,7 @@ struct SoftSheetScratch {
   std::vector<Vec3> wall_velocity;  // m/s per node, mean over the cloth's step: what the liquid meets
   std::vector<std::uint8_t> held;  // per node: a support holds it, or rest does
   std::vector<Real> inverse_mass;  // 1/kg per node, 0: held
+  ThreadResistance resistance;
   SheetWall wall;                  // what the liquid's solver sees of it
   std::vector<SheetHit> hits;      // of the liquid's particles in this step
   std::vector<std::vector<SheetHit>> hit_tiles;

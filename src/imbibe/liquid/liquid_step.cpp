@@ -94,14 +94,15 @@ PressureReport find_shift(LiquidFields& f, const LiquidParams& params, Real dt, 
 }
 
 // The soft sheets among the walls, ready for the solve; null without any.
-SheetContacts* take_sheets(LiquidFields& f, std::span<const Wall> walls, Real particle_mass, LiquidScratch& scratch) {
+SheetContacts* take_sheets(LiquidFields& f, std::span<const Wall> walls, Real particle_mass, Real dt,
+                          LiquidScratch& scratch) {
   scratch.sheet_walls.assign(walls.size(), nullptr);
   bool any = false;
   for (std::size_t k = 0; k < walls.size(); ++k)
     if (walls[k].sheet != nullptr) scratch.sheet_walls[k] = walls[k].sheet, any = true;
   if (!any) return nullptr;
   collect_feet(f.boundary, f.feet);
-  scratch.sheets.begin(f.feet, scratch.sheet_walls, particle_mass);
+  scratch.sheets.begin(f.feet, scratch.sheet_walls, particle_mass, dt);
   return &scratch.sheets;
 }
 
@@ -257,7 +258,7 @@ LiquidStepReport step_liquid(Liquid& liquid, const LiquidParams& params, std::sp
     report.divergence_iterations = shift.iterations;
     report.remaining_density_error = shift.residual;
   }
-  SheetContacts* const sheets = take_sheets(f, walls, liquid.particle_mass, scratch);
+  SheetContacts* const sheets = take_sheets(f, walls, liquid.particle_mass, dt, scratch);
   const PressureReport pressure =
       project_velocity(f, params.pressure, dt, shifts ? 0 : std::min(1.0, relaxation), warm_pressure, sheets);
   add_wall_impulse(f.boundary, f.wall_push, liquid.particle_mass * dt, report.wall_pressure_impulse);

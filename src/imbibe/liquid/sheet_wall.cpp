@@ -6,21 +6,30 @@ namespace imbibe {
 
 // All loops are serial: feet are few against particles, and the order of sums over a node's feet is fixed.
 
-void SheetContacts::begin(std::span<SheetFoot* const> feet, std::span<SheetWall* const> walls, Real particle_mass) {
+void SheetContacts::begin(std::span<SheetFoot* const> feet, std::span<SheetWall* const> walls, Real particle_mass, Real dt) {
   feet_.assign(feet.begin(), feet.end());
   walls_.assign(walls.begin(), walls.end());
   particle_mass_ = particle_mass;
-  first_node_.clear(), velocity_.clear();
-  for (const SheetWall* wall : walls_) {
-    first_node_.push_back(velocity_.size());
-    if (wall) velocity_.insert(velocity_.end(), wall->velocity.begin(), wall->velocity.end());
+  first_node_.clear(), velocity_.clear(), touched_.clear();
+  for (std::size_t k = 0; k < walls_.size(); ++k) {
+    const std::size_t first = velocity_.size();
+    first_node_.push_back(first);
+    const SheetWall* wall = walls_[k];
+    if (wall == nullptr) continue;
+    velocity_.insert(velocity_.end(), wall->velocity.begin(), wall->velocity.end());
+    pushed_.clear();
+    for (const SheetFoot* foot : feet_)
+      if (foot->wall == k) pushed_.insert(pushed_.end(), foot->node.begin(), foot->node.end());
+    std::sort(pushed_.begin(), pushed_.end());
+    pushed_.erase(std::unique(pushed_.begin(), pushed_.end()), pushed_.end());
+    std::span<const Index> answering = pushed_;
+    if (wall->resistance != nullptr) {
+      wall->resistance->begin(pushed_, dt);
+      answering = wall->resistance->nodes();
+    }
+    for (const Index node : answering) touched_.push_back(first + node);
   }
   answer_.assign(velocity_.size(), Vec3{});
-  touched_.clear();
-  for (const SheetFoot* foot : feet_)
-    for (const Index node : foot->node) touched_.push_back(first_node_[foot->wall] + node);
-  std::sort(touched_.begin(), touched_.end());
-  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
 }
 
 Vec3 SheetContacts::at(const SheetFoot& foot, const std::vector<Vec3>& nodal) const {
@@ -46,6 +55,9 @@ void SheetContacts::answer(std::span<const Float4> k) {
     for (std::size_t c = 0; c < 3; ++c)
       answer_[first_node_[foot->wall] + foot->node[c]] += (static_cast<Real>(foot->weight[c]) * inverse_mass(*foot, c)) * force;
   }
+  for (std::size_t wall = 0; wall < walls_.size(); ++wall)
+    if (walls_[wall] != nullptr && walls_[wall]->resistance != nullptr)
+      walls_[wall]->resistance->resist(std::span(answer_).subspan(first_node_[wall], walls_[wall]->velocity.size()));
 }
 
 void SheetContacts::add_answer(std::vector<float>& applied) const {

@@ -4,6 +4,7 @@
 //   dw_n   = dt/m_n sum_i m 2 k_i b_in P_i                        what the pressure gives a node
 // b weights of the corners of the sheet's triangle nearest to particle i, w_n, m_n velocity and mass of node n (held: no
 // answer), P_i the sheet's part of the wall gradient at i (boundary.h), m particle mass, k pressure over density.
+// On a sheet whose threads resist (SheetResistance) dw is what they leave of it, w = S J with S symmetric.
 // The nodes' answer stands inside the operator of the solve, A_i += 2 P_i.sum_n b_in dw_n/dt, which stays symmetric and
 // positive: a light cloth under a heavy liquid (0.1 kg/m2 under 5 kg/m2) makes an explicit exchange unstable at any step
 // (added mass). The cloth's own forces follow in its step; over a step the pair meets as an inelastic impact.
@@ -21,12 +22,22 @@
 
 namespace imbibe {
 
+// What in a sheet resists a push besides the masses of its nodes. Linear and symmetric.
+class SheetResistance {
+ public:
+  virtual ~SheetResistance() = default;
+  virtual void begin(std::span<const Index> pushed, Real dt) = 0;
+  virtual std::span<const Index> nodes() const = 0;       // whose velocities change: pushed ones and those tied to them
+  virtual void resist(std::span<Vec3> velocity) = 0;      // m/s: in J/m, 0 where not pushed; out S J
+};
+
 // One sheet for the duration of a step.
 struct SheetWall {
   const MovingMesh* surface = nullptr;      // where it is now: its end
   std::span<const Vec3> velocity{};         // m/s per node
   std::span<const Real> inverse_mass{};     // 1/kg per node; 0: held
   Real half_thickness = 0;                  // m
+  SheetResistance* resistance = nullptr;    // none: nodes answer by their masses alone
   std::vector<Vec3> impulse{};              // N s per node, given by the liquid in this step; added to
   std::vector<float> dragging{};            // kg per node, of liquid that sticks to it (viscosity.cpp)
   Real pressing = 0;                        // N s, by the pressure alone, along the normals into the sheet; added to
@@ -46,7 +57,7 @@ struct SheetFoot {
 class SheetContacts {
  public:
   // feet: of all particles, by rising particle. Returns nothing to do when there are none.
-  void begin(std::span<SheetFoot* const> feet, std::span<SheetWall* const> walls, Real particle_mass);
+  void begin(std::span<SheetFoot* const> feet, std::span<SheetWall* const> walls, Real particle_mass, Real dt);
   bool empty() const { return feet_.empty(); }
 
   // 2 w_i.P_i of each foot added to rate[particle] (scaled by `scale`), with the nodes' present velocities.
@@ -70,7 +81,8 @@ class SheetContacts {
   std::vector<SheetWall*> walls_;
   std::vector<std::size_t> first_node_;   // of each wall in the arrays below
   std::vector<Vec3> velocity_, answer_;
-  std::vector<std::size_t> touched_;      // nodes under a foot, each once: only they answer
+  std::vector<std::size_t> touched_;      // nodes under a foot and what is tied to them, each once: only they answer
+  std::vector<Index> pushed_;
   Real particle_mass_ = 0;
 };
 

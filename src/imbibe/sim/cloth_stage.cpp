@@ -90,6 +90,13 @@ bool any_cloth_moves(const World& world) {
                      [](const CellCloth& cloth) { return cloth.soft.moves(); });
 }
 
+bool any_threads_resist(const World& world) {
+  return std::any_of(world.cell_cloths.begin(), world.cell_cloths.end(),
+                     [](const CellCloth& cloth) { return threads_resist(cloth.soft); }) ||
+         std::any_of(world.textiles.begin(), world.textiles.end(),
+                     [](const Textile& textile) { return textile.cloth && threads_resist(textile.cloth->soft); });
+}
+
 Real longest_cloth_step(const World& world) {
   Real longest = std::numeric_limits<Real>::infinity();
   for (const CellCloth& cloth : world.cell_cloths) longest = std::min(longest, longest_step(cloth));

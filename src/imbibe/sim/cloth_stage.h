@@ -9,6 +9,7 @@ namespace imbibe {
 // Whether a soft sheet is in motion (those at rest or fixed are not stepped).
 bool any_cloth_moves(const World& world);
 bool any_network_cloth_moves(const World& world);
+bool any_threads_resist(const World& world);  // soft_sheet.h
 
 // s, the longest step that keeps liquid and cloth in touch; infinity without soft sheets.
 Real longest_cloth_step(const World& world);

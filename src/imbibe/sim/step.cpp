@@ -398,6 +398,11 @@ Real textile_interval(const World& world, bool moving) {
   return std::clamp(world.pace.wetting_interval, interval_with_moving_liquid, longest);
 }
 
+// Of the liquid's own step. The cloth takes its step before the liquid, as if there were none; what it does too much the liquid
+// undoes against the threads. With whole steps liquid on a hammock had a density error of 9.8 % in its worst step, with
+// halves 1.5 % (decision 7).
+Real share_beside_threads(const World& world) { return any_threads_resist(world) ? 0.5 : 1; }
+
 }  // namespace
 
 void emit_due(World& world) {
@@ -426,7 +431,8 @@ StepReport step(World& world, const StepOptions& options, StepScratch& scratch) 
     if (!world.textiles.empty()) max_step = std::min(max_step, std::max(interval - pace.since_wetting, 1e-6));
     max_step = std::min(max_step, longest_cloth_step(world));
     if (any_soft_sheet(world)) {  // cloth and liquid make the same step
-      max_step = std::min(max_step, liquid_step_bound(world.liquid, world.liquid_params, world.gravity).step_s);
+      max_step = std::min(max_step, share_beside_threads(world) *
+                                        liquid_step_bound(world.liquid, world.liquid_params, world.gravity).step_s);
       if (max_step > 0) advance_cloths(world, max_step, scratch, report);
     }
     move_liquid(world, max_step, scratch, report);
