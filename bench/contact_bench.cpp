@@ -2,7 +2,6 @@
 #include "bench.h"
 #include "imbibe/core/random.h"
 #include "imbibe/coupling/contact.h"
-#include "imbibe/coupling/footprint.h"
 #include "imbibe/liquid/kernel.h"
 #include "imbibe/liquid/neighbours.h"
 #include "textile_world.h"
