@@ -1,6 +1,7 @@
 #include "imbibe/wetting/along_yarn.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "imbibe/core/portable.h"
 
@@ -19,6 +20,9 @@ Real raised_to(Real x, Real power) {
   }
   return result;
 }
+
+// x^(-1/index); a root where two is the index, as it is of pores.
+Real inverse_root(Real x, Real index) { return index == 2 ? 1 / std::sqrt(x) : portable::pow(x, -1 / index); }
 
 }  // namespace
 
@@ -43,8 +47,8 @@ Sloped pressure_at(const Retention& r, Real saturation) {
     const Real slope = (r.entry + r.open) / r.overfill;
     return {-r.entry + slope * (saturation - 1), slope};
   }
-  if (saturation <= driest) return {-r.entry * portable::pow(plain_saturation(r, driest), -1 / r.size_index), 0};
-  const Real suction = r.entry * portable::pow(plain_saturation(r, saturation), -1 / r.size_index);
+  if (saturation <= driest) return {-r.entry * inverse_root(plain_saturation(r, driest), r.size_index), 0};
+  const Real suction = r.entry * inverse_root(plain_saturation(r, saturation), r.size_index);
   const Real in_corners = r.corner_share / (r.corner_share + (1 - r.corner_share) * saturation);
   return {-suction, suction / (r.size_index * saturation) * in_corners};
 }

@@ -32,8 +32,20 @@ void add_neighbours(const WettingModel& m, Work& w, Index node) {
   }
 }
 
-void add_ring(const WettingModel& m, Work& w, std::size_t first, std::size_t last) {
-  for (std::size_t i = first; i < last; ++i) add_neighbours(m, w, w.active[i]);
+// Adds the neighbours of those active nodes [first, last) that `from` chooses. Few of these lie at the rim.
+template <class From>
+void add_ring(const WettingModel& m, Work& w, std::size_t first, std::size_t last, From&& from) {
+  fit(w.at_rim, last - first);
+  parallel_for(last - first, [&](std::size_t i) {
+    const Index node = w.active[first + i];
+    const auto row = m.row_other.begin();
+    w.at_rim[i] = from(first + i) && std::any_of(row + m.row_start[node], row + m.row_start[node + 1], [&](Index other) {
+      return w.local_of[other] == no_index;
+    });
+  }, transport_tile);
+  for (std::size_t i = first; i < last; ++i) {
+    if (w.at_rim[i - first]) add_neighbours(m, w, w.active[i]);
+  }
 }
 
 // Effective entry suction of the curve a node is on now: the filling branch's, or higher while it drains.
@@ -62,15 +74,15 @@ void find_release_faces(const TransportInput& input, Work& w) {
   parallel_for(w.active.size(), [&](std::size_t i) {
     const Index node = w.active[i];
     w.face_share[i] = 1;
-    w.face_head[i] = face_head(m, node, m.faces(node), input.across(node));
+    w.face_head[i] = static_cast<float>(face_head(m, node, m.faces(node), input.across(node)));
   }, transport_tile);
   for (const FaceSupply& supply : input.supplies) {
     const Index i = w.local_of[supply.node];
     if (i == no_index || !(supply.wetted_share > 0)) continue;
     const std::uint8_t covered = supply.from_below ? lower_face : upper_face;
     const auto other = static_cast<std::uint8_t>(m.faces(supply.node) & ~covered);
-    if (other != 0) w.face_head[i] = face_head(m, supply.node, other, input.across(supply.node));
-    else w.face_share[i] = 1 - std::min<Real>(1, supply.wetted_share);
+    if (other != 0) w.face_head[i] = static_cast<float>(face_head(m, supply.node, other, input.across(supply.node)));
+    else w.face_share[i] = static_cast<float>(1 - std::min<Real>(1, supply.wetted_share));
   }
 }
 
@@ -89,10 +101,12 @@ void gather_own_sides(const TransportInput& input, Work& w) {
       conductance += factor, entry += factor * link_entry(m, w, link, a, b);
     }
     const bool segment = w.active[i] < m.segments && !m.params.hysteresis;
-    w.own_share[i] = input.dt / w.volume[i] * conductance;
-    w.own_entry[i] = segment || conductance <= 0 ? m.entry(w.active[i]) : entry / conductance;
+    w.own_share[i] = static_cast<float>(input.dt / w.volume[i] * conductance);
+    w.own_entry[i] = static_cast<float>(segment || conductance <= 0 ? m.entry(w.active[i]) : entry / conductance);
   }, transport_tile);
 }
+
+constexpr auto any = [](std::size_t) { return true; };
 
 void order_active(const WettingModel& m, Work& w) {
   w.active.clear();
@@ -103,11 +117,33 @@ void order_active(const WettingModel& m, Work& w) {
   }
 }
 
+// By how many places the nodes of a link lie apart.
+std::size_t farthest_link(const WettingModel& m, const Work& w) {
+  return parallel_max(w.active.size(), std::size_t{0}, [&](std::size_t begin, std::size_t end) {
+    std::size_t farthest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (Index k = m.row_start[w.active[i]]; k < m.row_start[w.active[i] + 1]; ++k) {
+        const Index other = w.local_of[m.row_other[k]];
+        if (other != no_index && other > i) farthest = std::max(farthest, other - i);
+      }
+    }
+    return farthest;
+  }, transport_tile);
+}
+
 // The links of the set, and the pattern of the matrix. A link belongs to the first of its nodes.
 void build_rows(const WettingModel& m, Work& w) {
-  if (w.rows_of == &m && w.rows_for == w.active) return;
   const std::size_t n = w.active.size();
-  std::vector<Index>& first_link = w.rows_for;  // until the end
+  const bool kept = w.rows_of == &m && w.rows_for == w.active;
+  if (!kept) w.rows_for = w.active, w.matrix.order = order_in_halves(n, farthest_link(m, w));
+  parallel_for(n, [&](std::size_t i) {
+    const std::size_t place = w.matrix.order.place(i);
+    w.active[place] = w.rows_for[i];
+    w.local_of[w.rows_for[i]] = static_cast<Index>(place);
+  }, transport_tile);
+  if (kept) return;
+  w.rows_of = &m;
+  std::vector<Index>& first_link = w.kind;  // until the end
   std::vector<Index>& row_start = w.matrix.row_start;
   row_start.assign(n + 1, 0);
   first_link.assign(n + 1, 0);
@@ -126,34 +162,28 @@ void build_rows(const WettingModel& m, Work& w) {
   fit(w.link_kind, first_link[n]);
   fit(w.row_link, row_start[n]);
   fit(w.matrix.column, row_start[n]);
-  parallel_tiles(n, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::pair<Index, Index>> row;
-    for (std::size_t i = begin; i < end; ++i) {
-      row.clear();
-      each_link(i, [&](Index other, Index kind) { row.emplace_back(other, kind); });
-      std::sort(row.begin(), row.end());
-      Index next = row_start[i], own = first_link[i];
-      for (const auto& [other, kind] : row) {
-        w.matrix.column[next] = other;
-        w.row_link[next++] = other > i ? own : kind;  // of the others the kind, until the link is found
-        if (other > i) w.link_kind[own++] = kind;
-      }
-    }
+  parallel_for(n, [&](std::size_t i) {
+    Index own = first_link[i], after = row_start[i + 1] - (first_link[i + 1] - own), before = row_start[i];
+    each_link(i, [&](Index other, Index kind) {
+      Index& next = other > i ? after : before;
+      w.matrix.column[next] = other;
+      w.row_link[next++] = other > i ? own : kind;  // of the others the kind, until the link is found
+      if (other > i) w.link_kind[own++] = kind;
+    });
   }, transport_tile);
   // The other node finds the link in the first one's row; parallel links of one kind are all alike.
   parallel_for(n, [&](std::size_t i) {
     for (Index k = row_start[i]; k < row_start[i + 1] && w.matrix.column[k] < i; ++k) {
       const Index other = w.matrix.column[k], kind = w.row_link[k];
-      for (Index back = row_start[other + 1]; back-- > row_start[other] && w.matrix.column[back] >= i;) {
-        if (w.matrix.column[back] == i && w.link_kind[w.row_link[back]] == kind) w.row_link[k] = w.row_link[back];
+      for (Index link = first_link[other], back = row_start[other + 1] - (first_link[other + 1] - link);
+           link < first_link[other + 1]; ++link, ++back) {
+        if (w.matrix.column[back] == i && w.link_kind[link] == kind) w.row_link[k] = link;
       }
     }
   }, transport_tile);
   fit(w.matrix.value, row_start[n]);
   fit(w.matrix.scale, n);
   fit(w.matrix.diagonal, n);
-  w.rows_of = &m;
-  w.rows_for = w.active;
 }
 
 }  // namespace
@@ -171,37 +201,35 @@ void choose_active(const TransportInput& input, const Contents& contents, Transp
     if (input.supplies[i].wetted_share > 0) add_active(m, w, input.supplies[i].node);
   }
   const std::size_t seeds = w.active.size();
-  add_ring(m, w, 0, seeds);
+  add_ring(m, w, 0, seeds, any);
   const std::size_t ring = w.active.size();
-  add_ring(m, w, seeds, ring);
+  add_ring(m, w, seeds, ring, any);
 }
 
 bool widen_active(const WettingModel& m, TransportWorkspace& w) {
   const std::size_t before = w.active.size();
-  for (std::size_t i = 0; i < before; ++i) {
-    if (w.saturation[i] > wet_saturation) add_neighbours(m, w, w.active[i]);
-  }
+  add_ring(m, w, 0, before, [&](std::size_t i) { return w.saturation[i] > wet_saturation; });
   if (w.active.size() == before) return false;
-  for (int ring = 0; ring < 2; ++ring) add_ring(m, w, before, w.active.size());
+  for (int ring = 0; ring < 2; ++ring) add_ring(m, w, before, w.active.size(), any);
   return true;
 }
 
 void gather(const TransportInput& input, const Contents& contents, TransportWorkspace& w) {
   const WettingModel& m = *input.model;
-  std::vector<Real> guess;  // per node, < 0: none
-  if (!w.saturation.empty()) {
-    guess.assign(m.nodes(), -1);
-    for (std::size_t i = 0; i < w.saturation.size(); ++i) guess[w.active[i]] = w.saturation[i];
-  }
+  w.previous = w.saturation;  // of the first nodes in `active`
+  const std::vector<Index> solved(w.active.begin(), w.active.begin() + static_cast<std::ptrdiff_t>(w.saturation.size()));
   order_active(m, w);
   build_rows(m, w);
   const std::size_t n = w.active.size();
-  for (auto* vector : {&w.volume, &w.old_saturation, &w.saturation, &w.pressure, &w.pressure_slope, &w.potential,
-                       &w.potential_slope, &w.height, &w.face_head, &w.face_share, &w.release, &w.release_slope, &w.residual,
-                       &w.change, &w.own_share, &w.own_entry}) {
-    vector->assign(n, 0);
+  for (auto* vector : {&w.volume, &w.old_saturation, &w.saturation, &w.pressure, &w.potential, &w.height, &w.residual,
+                       &w.change}) {
+    fit(*vector, n);
   }
-  if (m.params.hysteresis) w.reached.assign(n, 0);
+  for (auto* vector : {&w.pressure_slope, &w.potential_slope, &w.own_share, &w.own_entry, &w.old_pressure, &w.face_head,
+                       &w.face_share}) {
+    fit(*vector, n);
+  }
+  if (m.params.hysteresis) fit(w.reached, n), fit(w.curve_entry, n);
   fit(w.kind, n);
   const Vec3 weight = m.liquid.density * input.gravity;
   parallel_for(n, [&](std::size_t i) {
@@ -210,16 +238,13 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
     w.height[i] = input.field ? m.liquid.density * input.field->potential[node] : dot(weight, m.centre[node]);
     w.volume[i] = current_volume(m, contents, node);
     w.old_saturation[i] = contents.liquid_kg[node] / m.liquid.density / w.volume[i];
-    w.saturation[i] = w.old_saturation[i];
     if (m.params.hysteresis) w.reached[i] = contents.reached_saturation[node];
+    w.pressure[i] = w.pressure_slope[i] = 0;  // in the model as printed
+    set_saturation(m, w, i, w.old_saturation[i]);
+    w.old_pressure[i] = static_cast<float>(w.pressure[i]);
+    if (m.params.hysteresis) w.curve_entry[i] = effective_entry(m, w, static_cast<Index>(i));
   }, transport_tile);
   find_release_faces(input, w);
-  evaluate_nodes(m, w);
-  w.old_pressure = w.pressure;
-  if (m.params.hysteresis) {
-    fit(w.curve_entry, n);
-    parallel_for(n, [&](std::size_t i) { w.curve_entry[i] = effective_entry(m, w, static_cast<Index>(i)); }, transport_tile);
-  }
   const bool kunzel = m.params.model == TransportModel::kunzel;
   w.redistribution = kunzel && input.supplies.empty() ? m.params.redistribution_factor : 1;
   gather_own_sides(input, w);
@@ -228,10 +253,8 @@ void gather(const TransportInput& input, const Contents& contents, TransportWork
     const Index local = w.local_of[input.supplies[i].node];
     if (local != no_index && input.supplies[i].wetted_share > 0) w.supplies.push_back({.supply = i, .node = local});
   }
-  if (guess.empty()) return;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (guess[w.active[i]] >= 0) w.saturation[i] = guess[w.active[i]];
-  }
+  parallel_for(solved.size(), [&](std::size_t i) { set_saturation(m, w, w.local_of[solved[i]], w.previous[i]); },
+               transport_tile);
 }
 
 }  // namespace imbibe

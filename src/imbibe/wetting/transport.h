@@ -61,10 +61,12 @@ struct TransportWorkspace {
   };
   std::vector<Index> local_of;          // per node: its place in `active`, or no_index
   std::vector<Index> active;
-  // Per solved node; `height` is rho g z downwards, Pa.
-  std::vector<Real> volume, old_saturation, old_pressure, saturation, previous, pressure, pressure_slope, potential,
-      potential_slope, height, face_head, face_share, release, release_slope, residual, change, reached, curve_entry, own_share,
-      own_entry;
+  std::vector<char> at_rim;             // while the set is chosen
+  // Per solved node; `height` is rho g z downwards, Pa. In single precision: slopes, what only finds the way to the solution,
+  // what is compared only, and the weight of a column as high as half the cloth.
+  std::vector<Real> volume, old_saturation, saturation, previous, pressure, potential, height, residual, change, reached,
+      curve_entry;
+  std::vector<float> pressure_slope, potential_slope, own_share, own_entry, old_pressure, face_head, face_share;
   std::vector<Index> kind;              // per node, as in the model
   std::vector<LinkFlow> links;          // each once
   std::vector<Index> link_kind;         // per link, as in the model

@@ -164,32 +164,41 @@ Real link_entry(const WettingModel& m, const TransportWorkspace& w, const LinkKi
   return m.params.hysteresis ? w.curve_entry[upstream] : m.kinds[w.kind[upstream]].entry;
 }
 
+void set_saturation(const WettingModel& m, TransportWorkspace& w, std::size_t i, Real s) {
+  w.saturation[i] = s;
+  if (m.params.model == TransportModel::as_printed) return;
+  const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, w.active[i], s, w.reached[i])
+                                       : filling_pressure(m.kinds[w.kind[i]], s);
+  w.pressure[i] = p.value, w.pressure_slope[i] = static_cast<float>(p.slope);
+}
+
+Sloped release_law(const WettingModel& m, const TransportWorkspace& w, std::size_t i) {
+  if (m.params.model == TransportModel::as_printed) return {};
+  const NodeKind& kind = m.kinds[w.kind[i]];
+  const Sloped open = valve(w.pressure[i] + w.face_head[i], kind.open);
+  const Real conductance = w.face_share[i] * kind.release_conductance;
+  return {conductance * open.value, conductance * open.slope * w.pressure_slope[i]};
+}
+
 void evaluate_nodes(const WettingModel& m, TransportWorkspace& w) {
-  const TransportModel law = m.params.model;
   parallel_for(w.active.size(), [&](std::size_t i) {
-    const Index node = w.active[i];
-    const Real s = w.saturation[i];
-    const NodeKind& kind = m.kinds[w.kind[i]];
-    if (law == TransportModel::as_printed) {
-      const Sloped phi = node < m.segments ? printed_potential(s) : Sloped{s, 1};
-      w.potential[i] = phi.value, w.potential_slope[i] = phi.slope;
-      return;
+    const bool segment = w.active[i] < m.segments;
+    Sloped potential;
+    switch (m.params.model) {
+      case TransportModel::as_printed:
+        potential = segment ? printed_potential(w.saturation[i]) : Sloped{w.saturation[i], 1};
+        break;
+      case TransportModel::kunzel:
+        if (segment) potential = kunzel_potential(w.saturation[i]);
+        break;
+      case TransportModel::physical:
+        if (!segment) break;
+        const NodeKind& kind = m.kinds[w.kind[i]];
+        potential = kirchhoff_potential(kind.entry, kind.size_index, w.pressure[i]);
+        potential.slope *= w.pressure_slope[i];
+        break;
     }
-    const Sloped p = m.params.hysteresis ? hysteretic_pressure(m, node, s, w.reached[i]) : filling_pressure(kind, s);
-    w.pressure[i] = p.value, w.pressure_slope[i] = p.slope;
-    if (node < m.segments) {
-      if (law == TransportModel::kunzel) {
-        const Sloped phi = kunzel_potential(s);
-        w.potential[i] = phi.value, w.potential_slope[i] = phi.slope;
-      } else {
-        const Sloped psi = kirchhoff_potential(kind.entry, kind.size_index, p.value);
-        w.potential[i] = psi.value, w.potential_slope[i] = psi.slope * p.slope;
-      }
-    }
-    const Sloped open = valve(p.value + w.face_head[i], kind.open);
-    const Real conductance = w.face_share[i] * kind.release_conductance;
-    w.release[i] = conductance * open.value;
-    w.release_slope[i] = conductance * open.slope * p.slope;
+    w.potential[i] = potential.value, w.potential_slope[i] = static_cast<float>(potential.slope);
   }, transport_tile);
 }
 

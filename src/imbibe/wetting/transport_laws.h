@@ -24,7 +24,11 @@ struct YarnPotential {
   }
 };
 
-// Pressures, potentials and releases of the nodes at work.saturation.
+// Gives a node a saturation, and the pressure that it has there.
+void set_saturation(const WettingModel& model, TransportWorkspace& work, std::size_t local, Real saturation);
+// What a node gives off to its faces now, m3/s and per saturation.
+Sloped release_law(const WettingModel& model, const TransportWorkspace& work, std::size_t local);
+// Potentials of the nodes at their saturations.
 void evaluate_nodes(const WettingModel& model, TransportWorkspace& work);
 // Of a link between local nodes a and b in this step: its conductance now (the share of a pore's walls that is wetted,
 // D_ww, a bridge's area), and P_e of the curve that its potential follows.

@@ -499,6 +499,7 @@ WettingModel build_wetting_model(const YarnNetwork& network, const WettingParams
     m.fibres.push_back(type.fibre);
     m.yarns.push_back(yarn_wetting(type, params, liquid));
   }
+  m.segment_type.reserve(m.segments);
   for (std::size_t s = 0; s < m.segments; ++s) m.segment_type.push_back(network.yarn_type[network.segment_yarn[s]]);
   add_nodes(m, network);
   build_rows(m, find_links(m, network));
