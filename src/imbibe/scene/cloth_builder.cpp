@@ -232,7 +232,7 @@ CellCloth build_cell_cloth(const Scene& scene, std::size_t i) {
   if (!spec.contact_angle) cloth.soft.contact_angle = radians(45);
   cloth.params = spec.wetting.cells.value_or(CellParams{});
   cloth.wet = spec.sheet.soft ? spec.sheet.soft->wet : WetClothParams{};
-  cloth.colour = {0.26f, 0.40f, 0.60f};  // a blue on which water shows
+  cloth.colour = Vec3f(spec.colour);
   fit_cells(cloth);
   return cloth;
 }

@@ -250,6 +250,7 @@ struct TextileSpec {
   std::optional<Real> warp_contact_angle, weft_contact_angle;  // rad, advancing, in place of contact_angle
   std::optional<Real> receding_angle;  // rad
   std::optional<Real> regain;          // kg/kg, that its fibres are conditioned to
+  Vec3 colour{0.26, 0.40, 0.60};       // linear RGB, of a dry cloth of cells: a blue on which water shows
   SheetSpec sheet;
   WettingSpec wetting;
   ContactParams contact;
@@ -284,6 +285,10 @@ void describe(V& v, TextileSpec& p) {
             {.unit = "1", .shown = "%", .min = 0, .max = 1,
              .help = "water in its fibres per dry mass where no liquid touches them: conditioned to it at the start, and again "
                      "whenever it is changed (water from or to the air); default: in balance with start.humidity or the air"});
+  });
+  read_when(v, !woven, [&] {
+    v.value("colour", p.colour,
+            {.min = 0, .max = 1, .help = "linear red, green, blue of the dry cloth (a woven one has its yarns' colours)"});
   });
   v.group("sheet", p.sheet, "how the cloth is held");
   v.group("wetting", p.wetting, "how it takes liquid up");
