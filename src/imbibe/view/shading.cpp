@@ -183,7 +183,8 @@ Surface surface_of(const Trace& trace, const Ray& ray, const SolidHit& hit) {
   touch(trace.touched, hit.point);
   touch(trace.touched, hit.point + 1);
   s.colour = wet_colour(hit.colour, hit.saturation);
-  s.gloss = smoothstep(0.15f, 1.0f, hit.saturation);
+  // Between the fibres of a full yarn menisci are bent inwards and scatter what they mirror; what bulges out of them is a film.
+  s.gloss = 0.3f * smoothstep(0.15f, 1.0f, hit.saturation) + 0.4f * smoothstep(1.0f, 1.1f, hit.saturation);
   if (hit.cut_end) {
     s.colour *= 0.8f;  // light sinks in between the fibres' ends
   } else {
