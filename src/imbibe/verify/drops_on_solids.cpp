@@ -73,7 +73,8 @@ CaseResult drops_at_rest(CaseRunner& runner, const std::string& scene, const std
   r.charts.push_back(chart_of("Angle that the drop shows", "angle asked for", "deg", "angle", "deg", angles, {{"asked for", angles, ""}, {"shown", shown, ""}}));
   r.parameters = {{"drop", "10 uL of 50 mPa s, with water's surface tension, no gravity; born 30 degrees taller"}, {"time", fmt::format("{:g} capillary times, mean of the last {:g}", units, averaged)}};
   r.notes.push_back("The liquid has fifty times water's viscosity, so that its swing is over after some four capillary times; where it rests does not depend on it.");
-  r.notes.push_back(fmt::format("What moves on are particles at the line and in the surface, as fast as in water: at most {:.1f} mm/s (root mean square).", 1e3 * fastest));
+  r.notes.push_back(fmt::format("Residual motion: at most {:.1f} mm/s (root mean square). It is what is left of the drop's swing and rocking, and sliding as a whole: "
+                                "nothing drives a drop back to its place on a ball, and the tip of a cone and the crowns of a weave drive it off.", 1e3 * fastest));
   return r;
 }
 
