@@ -6,8 +6,8 @@
 
 #include "imbibe/cloth/air.h"
 #include "imbibe/cloth/cloth_work.h"
-#include "imbibe/cloth/thread_answer.h"
 #include "imbibe/cloth/solid_contact.h"
+#include "imbibe/cloth/thread_answer.h"
 #include "imbibe/core/error.h"
 #include "imbibe/core/parallel.h"
 
