@@ -210,7 +210,7 @@ TEST(SeedB, WithoutAbsorptionAndDragEnergyNeverGrows) {
   // Of what was lost. Springs: what their solver leaves of their strains over some tens of steps near the lowest point. Threads:
   // rounding and the turn of their directions in a step (decision 0007).
   for (const auto& [model, most] : {std::pair{"provot", 3e-3}, std::pair{"xpbd", 5e-4}}) {
-    for (int seed = 1; seed <= 4; ++seed) {
+    for (const int seed : {3, 4}) {  // the worst two of four
       const Energy energy = energy_without_losses(model, seed);
       RecordProperty(std::string(model) + std::to_string(seed), std::to_string(energy.growth / energy.lost));
       EXPECT_GT(energy.lost, 1e-3);
